@@ -8,11 +8,12 @@ from math import isinf
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
 
 from .explain.messages import notes
+from .numbers.digits import SHOWN_DIGITS
 from .numbers.text import nearest
 from .reading.answers import read_answers
 from .reading.inputs import OTHER_NAMES, read_digits
 from .solver.answers import Answers
-from .solver.quantities import MEASURED_NAMES, QUANTITIES
+from .solver.quantities import MEASURED_NAMES, QUANTITIES, STANDARD
 from .solver.scene import Given, Scene
 
 
@@ -48,7 +49,7 @@ def _described() -> str:
     return "\n".join(lines)
 
 
-@dataclass(frozen=True, init=False, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Solution(Generic[T]):
     __doc__ = f"""The state of a scene: floats, or Decimals if digits were asked for; None if undetermined.
 
@@ -146,6 +147,21 @@ class Solution(Generic[T]):
         from .output.scene_page import as_text
 
         return as_text(self._answers)
+
+    def __repr__(self) -> str:
+        """Return the regime, and the usual quantities to six digits, or with their uncertainties."""
+        from .output.scene_page import quantity_in_words
+
+        answers = self._answers.rounded_to(SHOWN_DIGITS)
+        shown: list[str] = [
+            quantity_in_words(answers, name) for name in STANDARD[1:] if answers[name] is not None
+        ]
+        return f"<Solution {'; '.join([self.regime, *shown])}>"
+
+    def _repr_html_(self) -> str:
+        from .output.text import in_html
+
+        return in_html(str(self))
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):

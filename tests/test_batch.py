@@ -248,6 +248,8 @@ def test_a_polars_that_is_too_old_or_missing_is_named(batch: Batch, monkeypatch:
     monkeypatch.setitem(sys.modules, "polars", None)
     why = f"this needs polars; install it with: pip install '{FROM}[batch]'"
     assert batch(TEXT) == (1, "", f"atwood: {why}\n")
+    with pytest.raises(ImportError, match=re.escape(why)):
+        solve_table([])
 
 
 # How it ends

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from errno import EINVAL
+from html import escape
 from pathlib import Path
 from shutil import copytree
 from types import SimpleNamespace
@@ -43,6 +44,22 @@ def test_a_solution_shows_itself_as_the_command_does(atwood: Atwood, given: str)
     shown = json.loads(atwood(*typed, "--json").out, parse_float=number, parse_int=number)
     assert json.loads(json.dumps(solution.to_dict(), allow_nan=False)) == {**shown, "version": 3}
     assert list(solution.to_dict()) == list(shown)
+    assert solution._repr_html_() == f"<pre>{escape(str(solution))}</pre>"
+
+
+@pytest.mark.parametrize(
+    ("given", "shown"),
+    [
+        (
+            "m1=1 m2=3 mu=0",
+            "verge; acceleration = 4.90332 m/s²; tension_1 = 14.7100 N; tension_2 = 14.7100 N",
+        ),
+        ("m1=1 m2=3 M=1e400 digits=900", "no-slip; acceleration = 3.92266e-399 m/s²; tension_1 = 9.80665 N"),
+        ("m1=1.0(1) m2=3 M=10", "no-slip; acceleration = 2.18 ± 0.13 m/s²; tension_1 = 12.0 ± 1.1 N"),
+    ],
+)
+def test_a_solution_names_itself_in_a_line(given: str, shown: str) -> None:
+    assert repr(solve(**inputs(given))).startswith(f"<Solution {shown}; ")
 
 
 def test_a_printed_solution_fits_the_terminal_and_has_no_colours(monkeypatch: pytest.MonkeyPatch) -> None:

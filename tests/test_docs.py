@@ -8,9 +8,13 @@ from collections import Counter
 from math import inf, nan
 from pathlib import Path
 from shutil import which
+from typing import Any
 
+import numpy as np
+import polars as pl
 import pytest
 
+from atwood_cli import REGIMES, SceneError, fit, solve, solve_arrays, solve_table
 from atwood_cli.reading.units import UNITS
 from atwood_cli.solver.scene import BODIES
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS
@@ -79,6 +83,48 @@ def test_what_ends_otherwise_is_not_written_unasked() -> None:
     for after in ("$ a\nx\n[2]\n", "$ a\n"):
         assert ends_otherwise(ends, after)
     assert ends_otherwise("$ a\nx\nstatus 1\n", "$ a\nx\nstatus 0\n")
+
+
+def taken_by(door: str, column: Any) -> str:
+    """What a door makes of the second cell of a column of M, or of times."""
+    fall = {"m1": [0.1] * 4, "m2": [0.12, 0.14, 0.16, 0.18], "t1": [2.05, 1.46, 1.21, 1.06]}
+    try:
+        if door == "fit":
+            repeats = [fit({**fall, "t2": [*more, 1.2, 1.05]}, drop=1) for more in (column, [2.06, None])]
+            return "not given" if repeats[0] == repeats[1] else "given"
+        if door == "solve":
+            return "not given" if solve(1, 3, M=[*column][1], mu=0.3).regime == "verge" else "given"
+        if door == "solve_arrays":
+            results = solve_arrays(1, 3, M=column, mu=0.3)
+            missing, failed = REGIMES[results["regime"][1]] == "verge", results["status"][1] > 0
+        else:
+            pandas = hasattr(column, "isna")
+            frame = column.to_frame("M").assign(m1=1, m2=3, mu=0.3) if pandas else pl.DataFrame({"M": column})
+            frame = frame if pandas else frame.with_columns(m1=1, m2=3, mu=0.3)
+            row = [*solve_table(frame, ["regime"])["regime"]], [*solve_table(frame)["error"]]
+            missing, failed = row[0][1] == "verge", "must be" in str(row[1][1])
+        return "error of its row" if failed else "not given" if missing else "given"
+    except SceneError:
+        return "error"
+
+
+def test_every_door_takes_missing_values_as_the_page_says() -> None:
+    pd = pytest.importorskip("pandas")
+    columns: dict[str, list[Any]] = {
+        "None": [[2.06, None], pl.Series([2.06, None])],
+        "masked": [np.ma.masked_less([2.06, 1.2], 2)],
+        "pd.NA": [pd.Series([2.06, pd.NA], dtype=kind) for kind in ("Float64", object)],
+        "NaN in pandas": [pd.Series([2.06, nan])],
+        "NaN elsewhere": [[2.06, nan], np.array([2.06, nan]), pl.Series([2.06, nan])],
+        "text": [["2.06", word] for word in ("", "NA", "NULL", "null")],
+    }
+    lines = PAGES["examples/programs.md"].split("| a value ")[1].split("\n\n")[0].splitlines()
+    (_, *doors), _, *rows = ([cell.strip(" `") for cell in line.split("|")[:-1]] for line in lines)
+    assert len(rows) == len(columns)
+    for (_, kind, *outcomes), (named, tried) in zip(rows, columns.items(), strict=True):
+        assert kind.startswith(named)
+        for door, outcome in zip(doors, outcomes, strict=True):
+            assert {taken_by(door, column) for column in tried if outcome} <= {outcome}, (kind, door)
 
 
 @pytest.mark.skipif(os.name == "nt" or not which("make"), reason="needs make")

@@ -433,7 +433,10 @@ def test_scipy_alone_is_needed() -> None:
     assert process(*RIT, code=f"{strictly} {needed}").status == 0
     status, out, err = process(*RIT, code=f"{start} sys.modules['scipy'] = None; sys.exit(run(sys.argv[1:]))")
     assert (status, out) == (1, "")
-    assert err == f"atwood: this needs scipy; install it with: pip install '{FROM}[fit]'\n"
+    why = f"this needs scipy; install it with: pip install '{FROM}[fit]'"
+    assert err == f"atwood: {why}\n"
+    call = "import sys; from atwood_cli import fit; sys.modules['scipy'] = None; fit({})"
+    assert f"ModuleNotFoundError: {why}" in process(code=call).err
 
 
 @pytest.mark.parametrize(
@@ -467,8 +470,9 @@ def test_in_python_it_is_what_json_has() -> None:
     out = called([*RIT, "--R", "25mm", "--without", "5", "--json"]).out
     want = json.loads(out.replace("--find rim_mass,axle,delay", "find='rim_mass,axle,delay'"))
     result: Fit = laboratory_fit(TABLE, drop="98cm", g="9.804", R="25mm", without=[5])
-    known = without_nulls(json.loads(json.dumps(result._asdict())))
-    assert {"version": want["version"], **known} == without_nulls(want)
+    assert json.loads(json.dumps(result.to_dict())) == want
+    assert repr(result).startswith("<Fit of 5 runs; rim_mass = ")
+    assert result._repr_html_().startswith("<pre>rim_mass = ")
     header, *rows = csv.reader(TABLE.read_text().splitlines())
     texts: dict[str, list[str]] = {name: [*cells] for name, *cells in zip(header, *rows, strict=True)}
     inertia: float | None = laboratory_fit(texts, drop=0.98, g="9.804", R="25mm", without="5").rim_mass

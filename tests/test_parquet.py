@@ -5,13 +5,14 @@ import math
 import re
 from collections.abc import Callable
 from itertools import count, product
+from math import nan
 from pathlib import Path
 from typing import Any
 
 import polars as pl
 import pytest
 
-from atwood_cli import solve_table
+from atwood_cli import solve, solve_table
 
 from .tools.running import Batch, Ran, process
 
@@ -123,10 +124,22 @@ def test_solve_table_appends_what_batch_does(solved: Any, quantities: list[str] 
         assert frame["error"].null_count() == 2
 
 
+def test_a_frame_of_pandas_keeps_its_index_and_its_columns() -> None:
+    pd = pytest.importorskip("pandas")
+    columns = {"m1 (g)": [250, 300], "m2": ["1/2", "x"], "M": [0.1, nan], "when": pd.Timestamp("2026-11-27")}
+    frame = pd.DataFrame(columns, index=[7, 9])
+    solved = solve_table(frame, ["regime", "a"])
+    assert solved[list(frame)].equals(frame)
+    assert [*solved["acceleration"]][:1] == [solve("250g", "0.5", M=0.1).acceleration]
+    assert solved["acceleration"].dtype == float
+    assert solved.loc[9, ["regime", "acceleration"]].isna().all()
+    assert "is not a number" in solved.loc[9, "error"]
+
+
 @pytest.mark.parametrize(
     ("table", "why"),
     [
-        *((table, f"the table is of type {type(table).__name__}; give a polars frame, as by pl.from_pandas(frame)") for table in ([1], pl.Series([1]), TABLE.to_dict())),
+        *((table, f"the table is of type {type(table).__name__}; give a data frame of polars or pandas") for table in ([1], pl.Series([1]), TABLE.to_dict())),
         (TABLE.with_columns(m2=True), "cannot read the table: column m2 holds Boolean, not numbers"),
         (TABLE.drop("m2"), "cannot read the table: column m2 is missing; there are 'id', 'm1 (g)', 'M', 'x'"),
         (TABLE.rename({"M": "M (u)"}), "cannot read the table: column 'M (u)' has the unit 'u'; it takes kg, g, mg, ug, t, lb, lbs, oz, st, slug; rename it"),

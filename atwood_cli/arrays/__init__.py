@@ -51,9 +51,9 @@ def solve_arrays(
 ) -> dict[str, NDArray[Any]]:
     """Solve arrays of scenes in doubles.
 
-    An input is a number, a sequence, an array or a polars column. All are broadcast against each other. An
-    input is not given in rows where it is masked (`numpy.ma`), None, or a null of polars. A NaN is an error
-    of its row.
+    An input is a number, a sequence, an array, or a column of polars or pandas. All are broadcast against
+    each other. An input is not given in rows where it is masked (`numpy.ma`), None, a null of polars, or NA
+    or NaN in a column of pandas. Any other NaN is an error of its row.
 
     Args:
         m1, m2: The masses, in kg.

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..reading.inputs import is_missing
 from ..solver.scene import DEFAULTS, INERTIA_FACTORS, INPUTS, MASSES, SceneError
 from .doubles import WINDOW, Column
 from .plan import COLUMN, Pattern
@@ -19,7 +20,7 @@ from .plan import COLUMN, Pattern
 Index = slice | NDArray[np.intp]
 """A selection of rows, in ascending order."""
 Numbers = ArrayLike | Sequence[str | float | Decimal | Fraction | None]
-"""The types that a column may have: whatever NumPy makes an array of. A polars column is one too."""
+"""The types that a column may have: whatever NumPy makes an array of, as columns of polars and pandas."""
 DISK = INERTIA_FACTORS["disk"]
 IF_ABSENT = {name: Fraction(default) for name, default in {**DEFAULTS, "inertia": DISK}.items()}
 """The exact values of inputs that always have one, in SI units and degrees."""
@@ -66,7 +67,7 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
     of these.
     """
     default = WHERE_ABSENT.get(name, nan)
-    if value is None:
+    if is_missing(value):
         return GivenColumn(np.array(default), np.array(True))
     try:
         array = value.data if isinstance(value, np.ma.MaskedArray) else np.asarray(value)
@@ -98,14 +99,16 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
 
 
 def _absent(value: Any, array: NDArray[Any]) -> NDArray[np.bool_] | None:
-    """Tell which items are not given: masked ones, None and nulls of polars. Return None if all are given."""
+    """Return where items are missing: masked, None, null of polars, NA or NaN of pandas; None if nowhere."""
     absent: Any = np.array(False)
     if isinstance(value, np.ma.MaskedArray):
         absent = np.ma.getmaskarray(value)
     elif hasattr(value, "is_null"):  # polars
         absent = np.asarray(value.is_null(), np.bool_)
+    elif hasattr(value, "isna"):  # pandas
+        absent = np.asarray(value.isna(), np.bool_)
     if array.dtype == object:
-        absent = absent | np.asarray(np.frompyfunc(lambda item: item is None, 1, 1)(array), np.bool_)
+        absent = absent | np.asarray(np.frompyfunc(is_missing, 1, 1)(array), np.bool_)
     return absent if absent.any() else None
 
 

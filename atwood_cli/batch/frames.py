@@ -9,8 +9,9 @@ A file of Parquet comes in such batches, too, one after the other, from the thre
 import re
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
+from ..numbers.text import naming_the_extra
 from ..reading.names import read_quantities
 from ..tables.sources import Unreadable
 from .solving import ReadColumns, Tally, Wanted, read_columns, solve_cells
@@ -18,7 +19,7 @@ from .solving import ReadColumns, Tally, Wanted, read_columns, solve_cells
 if TYPE_CHECKING:
     import polars as pl
 
-Table = TypeVar("Table", "pl.DataFrame", "pl.LazyFrame")
+Table = TypeVar("Table")
 OLDEST_POLARS = "1.41.1"
 
 
@@ -36,39 +37,62 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
     """Append its results to each row of a table of scenes, as `atwood batch` does.
 
     Args:
-        table: A data frame of polars, eager or lazy, with a row for each scene. Its columns m1, m2, M, mu and
-            so on are inputs, in SI units and degrees, or in the unit of the heading, as "m1 (g)". Other
-            columns stay as they are. An input is not given where a value is missing. A NaN is an error of
-            its row, and a text that is no number is, too.
+        table: A data frame of polars, eager or lazy, or of pandas, with a row for each scene. Its columns m1,
+            m2, M, mu and so on are inputs, in SI units and degrees, or in the unit of the heading, as
+            "m1 (g)". Other columns stay as they are. An input is not given where a value is missing; in
+            pandas, NaN is such a value. A NaN in polars is an error of its row, as a text that is no number.
         quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, regime,
             acceleration, tension_1, tension_2, mu_verge, friction_force and critical_pulley_mass.
 
     Returns:
-        A table with the same rows, eager or lazy as the other was. Behind the columns of that table it has
+        A table of the same kind with the same rows. Behind the columns of that table it has
         a column for each quantity, the nearest double in SI units, null where a value does not exist or is
         beyond the doubles; and ``error``, a sentence on each bad row, null in the others.
 
     Raises:
         SceneError: A quantity is not known (a ValueError).
-        ValueError: The table is no frame of polars, lacks a mass, or has a column that could be meant for an
-            input, holds no numbers, or is named as a result.
+        ValueError: The table is no frame of polars or pandas, lacks a mass, or has a column that could be
+            meant for an input, holds no numbers, or is named as a result.
         ImportError: polars is missing or too old.
     """
-    import polars as pl
+    with naming_the_extra():
+        import polars as pl
 
     check_polars()
-    if not isinstance(table, pl.DataFrame | pl.LazyFrame):
-        what = f"the table is of type {type(table).__name__}"
-        raise ValueError(f"{what}; give a polars frame, as by pl.from_pandas(frame)")
+    frame: Any = table
     wanted = Wanted(read_quantities(quantities))
-    schema = table.collect_schema()
     try:
+        if hasattr(frame, "iloc"):
+            return cast(Table, _solve_pandas(frame, wanted))
+        if not isinstance(frame, pl.DataFrame | pl.LazyFrame):
+            what = f"the table is of type {type(table).__name__}"
+            raise ValueError(f"{what}; give a data frame of polars or pandas")
+        schema = frame.collect_schema()
         solve = partial(with_results, columns=read_columns(schema.names(), wanted), wanted=wanted)
-        if isinstance(table, pl.DataFrame):
-            return solve(table)
-        return table.map_batches(solve, schema=solve(pl.DataFrame(schema=schema)).schema, streamable=True)
+        if isinstance(frame, pl.DataFrame):
+            return cast(Table, solve(frame))
+        schema = solve(pl.DataFrame(schema=schema)).schema
+        return cast(Table, frame.map_batches(solve, schema=schema, streamable=True))
     except Unreadable as error:
         raise ValueError(f"cannot read the table: {error}") from None
+
+
+def _solve_pandas(frame: Any, wanted: Wanted) -> Any:
+    """Return a frame of pandas with its results; polars would take it as a whole only with pyarrow."""
+    import polars as pl
+
+    columns, cells = read_columns([*map(str, frame.columns)], wanted), {}
+    for heading in columns.headings:
+        column = frame.iloc[:, heading.place]
+        of_numbers = column.dtype.kind in "iuf"  # others may hold numbers and texts
+        pairs = zip(column.tolist(), column.isna(), strict=True)
+        cells[heading.name] = [
+            None if absent else cell if of_numbers else str(cell) for cell, absent in pairs
+        ]
+    results = solve_cells(pl.DataFrame(cells), columns, wanted, Tally(set()))
+    return frame.assign(
+        **{x.name: x.to_numpy() if x.dtype.is_float() else x.to_list() for x in results.iter_columns()}
+    )
 
 
 def with_results(

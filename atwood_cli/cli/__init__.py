@@ -12,14 +12,12 @@ import typer
 from typer.core import TyperCommand
 
 from .. import __version__
-from ..numbers.text import LONGEST_NAME, shortened
+from ..numbers.text import LONGEST_NAME, naming_the_extra, shortened
 from ..output.text import drop, finish, say
 from ..solver.scene import SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_options
 
 COMMANDS = ("solve", "sweep", "contact", "fit", "batch", "quantities", "tradeoff")
-EXTRAS = {"matplotlib": "figure", "polars": "batch", "scipy": "fit"}
-"""The extras that bring optional packages."""
 HELP = """Solve Atwood's machine with pulley mass and friction, every digit right.
 
 \b
@@ -115,7 +113,8 @@ def run(arguments: list[str] | None = None) -> int:
         # Help, completion and hints must know all commands.
         is_one = arguments and arguments[0] in COMMANDS and COMPLETING not in os.environ
         command = program(arguments[:1] if is_one else COMMANDS)
-        status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
+        with naming_the_extra():
+            status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
         if status == ON_CTRL_C:
             raise KeyboardInterrupt
         sys.stdout.flush()
@@ -151,11 +150,6 @@ def run(arguments: list[str] | None = None) -> int:
 
 def _why(error: Exception) -> str:
     """Return the reason of an error, as a sentence."""
-    if isinstance(error, ModuleNotFoundError):
-        package = str(error.name).partition(".")[0]
-        if package not in EXTRAS:
-            raise error
-        return f"this needs {package}; install it with: pip install 'atwood-cli[{EXTRAS[package]}]'"
     if isinstance(error, io.UnsupportedOperation):
         return "cannot write the output: stdout is closed"
     if isinstance(error, OSError) and error.errno is not None:  # without a number, it is a sentence of ours

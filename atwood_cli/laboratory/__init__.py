@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
-from ..numbers.text import without_blanks
+from ..numbers.text import naming_the_extra, without_blanks
 from ..reading.inputs import read_input
 from ..reading.names import divided
 from ..solver.scene import INPUTS, Given, SceneError
@@ -33,7 +33,7 @@ def fit(
     R: Given | None = None,
     axle: Given | None = None,
     find: str | Sequence[str] | None = None,
-    without: str | Collection[int | str] = (),
+    without: str | int | Collection[int | str] = (),
 ) -> Fit:
     """Fit the pulley's inertia and its axle's friction to runs of a laboratory, by T_h - T_l = c a + f.
 
@@ -41,14 +41,15 @@ def fit(
         runs: A table with a row for each run: the path of a CSV or .tsv file, a mapping of columns of equal
             length, or a polars frame. Columns are named as in a file: m1, m2, and a, or t (t1, t2 and so on
             for repeats). They are in kg, m/s² and s unless the name has a unit, as "m1 (g)"; a cell may be
-            text, as "2.05(2)". None and NaN are empty cells.
+            text, as "2.05(2)". A missing value, as None or NaN, is an empty cell.
         drop: The height of fall of all runs, in m, for times.
         g, M, inertia, I, R, axle: Inputs that all runs share, as `solve` takes them: numbers in SI units, or
             text with a unit or an uncertainty. M, I, axle and g are not fitted if given. R gives the moment
             of inertia, ``inertia`` the pulley's mass.
         find: The quantities to fit, of "rim_mass", "axle", "gravity" and "delay"; if None, the first two
             unless given. Of these two, each must be given or fitted.
-        without: Rows to leave out, by their numbers from 1, and cells, as "8:t2"; or a text, as "5,8:t2".
+        without: Rows to leave out, by their numbers from 1, and cells, as "8:t2"; or one of them, or a text,
+            as "5,8:t2".
 
     Returns:
         `Fit`: values by name in SI units, their standard uncertainties and intervals of 95 %, the runs,
@@ -58,13 +59,15 @@ def fit(
         SceneError: A parameter is not valid (a ValueError).
         ValueError: The columns are no table of runs.
         OSError: The file cannot be read, or is no table of runs.
+        ImportError: SciPy is missing.
         ArithmeticError: The runs do not determine the quantities, or no pulley explains them.
     """
-    from .report import results_of
+    with naming_the_extra():
+        from .report import results_of
 
     given = {"g": g, "M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "drop": drop}
     names = [find] if isinstance(find, str) else find or ()
-    left_out = divided([without]) if isinstance(without, str) else without
+    left_out = divided([str(without)]) if isinstance(without, str | int) else without
     try:
         found = results_of(fit_of(runs, given, names, without=left_out))
     except SceneError:

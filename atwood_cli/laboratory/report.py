@@ -8,12 +8,12 @@ import numpy as np
 from ..numbers.digits import format_number
 from ..numbers.text import counted
 from ..output.page import Page, aligned
-from ..output.text import VERSION, Report, cell, inputs_in_words
+from ..output.text import Report, cell, inputs_in_words
 from ..solver.scene import Motion, parameter_of
 from .estimate import as_data, expected
 from .fitting import RARE, SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, published, rounded
-from .runs import MEASURED, WORDS
+from .runs import MEASURED
 
 NOT_FITTED = "no value, as it is given, was not to be fitted, or the runs do not determine it"
 NEEDS = {
@@ -103,9 +103,7 @@ def results_of(fit: Fitted) -> Fit:
 def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     """Return a fit in the forms in which it may be asked for; ``only`` names results."""
     found, results = results_of(fit), fit.whole.results
-    record: dict[str, Any] = {"version": VERSION, **found._asdict()}
-    record |= {name: dict.fromkeys(QUANTITIES) | record[name] for name in ("uncertainty", "interval")}
-    record["runs"] = [{**dict.fromkeys(WORDS), **run} for run in found.runs]
+    record = found.to_dict()
     asked = {name: record[name] for name in only or record}
     rows: Sequence[Mapping[str, Any]] = [asked]
     said = [*found.notes]

@@ -13,6 +13,8 @@ from ..numbers.digits import (
     strip_zeros,
     to_digits,
 )
+from ..numbers.text import counted
+from ..output.text import VERSION, in_html
 
 
 class Quantity(NamedTuple):
@@ -111,6 +113,21 @@ class Fit(NamedTuple):
     between_runs: float | None
     runs: Sequence[Mapping[str, Any]]
     notes: Sequence[str]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the record that ``--json`` prints, for `json`."""
+        from .runs import WORDS
+
+        record: dict[str, Any] = {"version": VERSION, **self._asdict()}
+        record |= {name: dict.fromkeys(QUANTITIES) | record[name] for name in ("uncertainty", "interval")}
+        return record | {"runs": [{**dict.fromkeys(WORDS), **run} for run in self.runs]}
+
+    def __repr__(self) -> str:
+        results = [equation(x, getattr(self, x), u) for x, u in self.uncertainty.items()]
+        return f"<Fit of {'; '.join([counted(len(self.runs), 'run'), *results])}>"
+
+    def _repr_html_(self) -> str:
+        return in_html(str(self))
 
     def __str__(self) -> str:
         lines = [

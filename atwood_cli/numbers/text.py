@@ -1,7 +1,10 @@
 """Texts as messages show them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 
+EXTRAS = {"matplotlib": "figure", "polars": "batch", "scipy": "fit"}
+"""The extras that bring optional packages."""
 LONGEST_NAME = 255
 """The most characters of a file name that a message shows."""
 
@@ -38,3 +41,16 @@ def nearest(word: str, words: Iterable[str]) -> str:
     words = list(words) if word else []
     close = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
     return f"; did you mean {close[0]}?" if close else ""
+
+
+@contextmanager
+def naming_the_extra() -> Iterator[None]:
+    """Let the error for an optional package that is missing say how to install it."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        package = str(error.name).partition(".")[0]
+        if package not in EXTRAS:
+            raise
+        way = f"install it with: pip install 'atwood-cli[{EXTRAS[package]}]'"
+        raise ModuleNotFoundError(f"this needs {package}; {way}", name=error.name) from None

@@ -64,7 +64,7 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
     With ``values``, uncertain ones are said with their uncertainties.
     """
-    sentences = [_stated(answers, name) for name in names if values and answers.uncertainty(name)]
+    sentences = [quantity_in_words(answers, name) for name in names if values and answers.uncertainty(name)]
     if "regime" in names and answers.decided.mu_assumed:
         sentences.insert(0, f"regime: {REGIME_ASSUMED}.")
     return [
@@ -112,7 +112,7 @@ def print_table(
     names = answers.names[1:] if whole else main_quantities(answers)
     measured = measured_quantities(answers)
     groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *measured)])
-    stated = [_stated(answers, name) for name in measured if cell(answers[name])]
+    stated = [quantity_in_words(answers, name) for name in measured if cell(answers[name])]
     _print_head(page, answers, f"Found: {', '.join(stated)}." if stated else "")
     if groups:
         page.table(COLUMNS, groups)
@@ -160,7 +160,7 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     return list(groups.values())
 
 
-def _stated(answers: Answers, name: str) -> str:
+def quantity_in_words(answers: Answers, name: str) -> str:
     """Say a quantity with its value, uncertainty and unit."""
     return f"{name} = {with_unit(_with_uncertainty(answers, name), QUANTITIES[name].unit)}"
 

@@ -182,6 +182,13 @@ def cell(value: object) -> str:
     return "" if value is None else str(value)
 
 
+def in_html(words: str) -> str:
+    """Return a page of text as a notebook shows it."""
+    from html import escape
+
+    return f"<pre>{escape(words)}</pre>"
+
+
 def scene_record(scene: Scene, round_: Rounding[Any] = to_double) -> dict[str, object]:
     """Return the inputs for JSON, in SI units and degrees: numbers, or text with a unit.
 

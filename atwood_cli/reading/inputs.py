@@ -65,12 +65,17 @@ def read_scene(given: Mapping[str, Given | None]) -> Scene:
     return Scene.of({name: read_exactly(name, given.get(name)) for name in INPUTS})
 
 
+def is_missing(value: object) -> bool:
+    """Decide whether a value is not given: None, a masked one of NumPy, NA or NaT of pandas."""
+    return value is None or type(value).__name__ in ("MaskedConstant", "NAType", "NaTType")
+
+
 def read_input(name: str, given: Given | None, signed: bool = False) -> Input:
     """Read one input, whose text may carry a standard uncertainty; ``signed`` allows it to be below 0.
 
     Raises SceneError.
     """
-    if given is None:
+    if given is None or is_missing(given):
         return _default(name)
     if isinstance(given, str):
         number = _read_text(name, given, given)

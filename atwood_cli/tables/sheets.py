@@ -20,8 +20,8 @@ MOST_BYTES = 64 << 20
 UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 """The first bytes of a file in UTF-16, as Excel writes its "Unicode text"."""
 COMMENTS = "lines that begin with # left out"
-MISSING = ("nan", "None", "<NA>", "NaT")
-"""How Python writes a missing value."""
+MISSING = ("nan", "NaN", "None", "<NA>", "NaT", "--")
+"""How Python writes a missing value, and NumPy a masked one."""
 
 
 class Sheet(NamedTuple):
@@ -39,7 +39,7 @@ def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str]) -> S
         with ExitStack() as stack:
             content = _content(blocks_of(opened(fspath(source), stack)))
         return read_sheet(content, vocabulary, named)
-    if not hasattr(source, "items") and not hasattr(source, "columns"):
+    if hasattr(source, "collect") or not (hasattr(source, "items") or hasattr(source, "columns")):
         raise Unreadable(f"it is of type {type(source).__name__}; give a path, a mapping or a data frame")
     columns: list[tuple[str, list[str]]] = []
     pairs = source.items() if hasattr(source, "items") else zip(source.columns, source, strict=True)
