@@ -29,7 +29,7 @@ from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.decisions import REGIME_ASSUMED, Decisions
 from atwood_cli.solver.quantities import ACCURACIES, NAMES, Accuracy
-from atwood_cli.solver.scene import INPUTS, MASSES
+from atwood_cli.solver.scene import INPUTS, MASSES, TORQUE, WEIGHT
 
 from .conftest import examples
 from .tools.doors import columns_of, solve_any, within_promise
@@ -157,6 +157,29 @@ FAULTS = {
     "needs the radius R as well": "I without R",
     "contradicts M": "I with M = 0 or inf",
 }
+
+
+TERMS = {"m1": WEIGHT, "m2": WEIGHT, "M": WEIGHT, "axle": TORQUE}
+
+
+@pytest.mark.parametrize("accuracy", ACCURACIES)
+@pytest.mark.parametrize("names", [["m1", "m2"], ["m2"], ["m1", "M"], ["axle"], [*TERMS]])
+def test_weights_and_torques_are_converted_exactly(names: list[str], accuracy: Accuracy) -> None:
+    """Also a weight beside the mass that it is, or is nearly; g is absent in some rows, and M infinite."""
+    rng, rows = Random(str(names)), list[dict[str, float]]()
+    for _ in range(120):
+        sizes = {x: 10 ** rng.uniform(-2, 2) * rng.choice([1, 1, 1e-200, 1e150]) for x in TERMS}
+        row = {**sizes, "R": rng.uniform(0.01, 1), "mu": rng.choice([0.1, 0.3, 1.0])}
+        row |= {"g": rng.choice([9.81, 8.0])} if rng.random() < 0.7 else {}
+        row |= {"m2": row["m1"] * rng.choice([8.0, 9.80665, 9.81])} if rng.random() < 0.4 else {}
+        rows.append(row | {"M": inf} if rng.random() < 0.1 else row)
+    terms = {name: TERMS[name] for name in names}
+    results, _ = arrays.solve_and_count(columns_of(rows), accuracy, [*NAMES], terms)
+    for i, row in enumerate(rows):
+        exact: dict[str, Any] = {x: value if value == inf else Fraction(value) for x, value in row.items()}
+        by = {"g": exact.get("g", Fraction("9.80665")), "R": exact["R"]}
+        own = {x: t.own(exact[x], by[t.by]) for x, t in terms.items() if exact[x] != inf}
+        assert_is_solve(results, i, exact | own, accuracy)
 
 
 numbers = st.floats(1e-3, 1e3)

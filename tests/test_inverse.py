@@ -15,6 +15,7 @@ from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES
 from atwood_cli.solver.scene import UNMEASURED
 
+from .tools.doors import solve_any
 from .tools.scenes import inputs
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
@@ -114,3 +115,51 @@ def test_about_the_greatest_acceleration_that_an_error_names_is_taken(masses: st
         solve(**given, a=9 if Fraction(given["m2"]) > Fraction(given["m1"]) else -9)
     [greatest] = re.findall("the acceleration is (.*) m/s²", str(caught.value))
     assert solve(**given, a=Fraction(greatest) * Fraction("0.99999")).mu_k is not None
+
+
+sizes = st.builds(
+    lambda digits, power: Fraction(digits) * Fraction(10) ** power, masses, st.integers(-150, 150)
+)
+
+
+@given(masses | sizes, masses_or_0 | sizes, masses_or_0, masses | sizes, masses_or_0 | sizes, st.booleans())
+def test_axle_friction_is_that_of_newtons_equations_also_where_masses_slow_down(
+    l: Fraction, more: Fraction, M: Fraction, g: Fraction, f: Fraction, mirrored: bool
+) -> None:
+    """h descends, with T_h - T_l - f = c a, whatever its speed; equal masses only slow down."""
+    h, c = l + more, M / 2
+    a = (g * (h - l) - f) / (h + l + c)
+    if not -g < a or (not more and not f):
+        return
+    m1, m2, sign = (h, l, -1) if mirrored else (l, h, 1)
+    found = solve_any(m1=m1, m2=m2, M=M, g=g, a=sign * a, find="axle", R=2, digits=40)
+    exact = {"axle": f, "axle_torque": 2 * f, "acceleration": sign * a, "torque": sign * 2 * (c * a + f)}
+    exact |= {"tension_1": m1 * (g + sign * a), "tension_2": m2 * (g - sign * a)}
+    assert found.scene.axle == f
+    for name, value in exact.items():
+        assert getattr(found, name) == Answers(found.scene, 40).round(value), name
+    assert ("Slows down" in found.notes[0]) == (a < 0)
+
+
+@given(masses, masses, masses, masses, st.booleans(), st.booleans())
+def test_two_of_a_fall_give_the_acceleration_and_one_gives_the_others(
+    l: Fraction, more: Fraction, c: Fraction, t: Fraction, mirrored: bool, finds_heavier: bool
+) -> None:
+    a = more / (2 * l + more + c)  # with g = 1
+    fall = {"drop": a * t * t / 2, "time": t, "speed": a * t}
+    m1, m2 = (l + more, l) if mirrored else (l, l + more)
+    known: dict[str, Any] = {"m1": m1, "m2": m2, "M": c, "inertia": 1, "g": 1, "digits": 30}
+    results = {"drop": "drop", "time": "fall_time", "speed": "final_speed"}
+    for name in fall:
+        other = solve_any(**known, **{name: fall[name]})
+        two = {x: value for x, value in fall.items() if x != name}
+        pulley = solve_any(**known | {"M": None}, **two)
+        unknown = "m1" if finds_heavier == mirrored else "m2"
+        signed = {x: -value if mirrored and x != "time" else value for x, value in two.items()}
+        mass = solve_any(**known | {unknown: None}, **signed)
+        assert (pulley.scene.M, getattr(mass.scene, unknown)) == (c, known[unknown])
+        for x, result in results.items():
+            nearest = mass._answers.round(fall[x])
+            for solution in (other, pulley, mass):
+                value = getattr(solution, result)
+                assert value == nearest or (value is None and x == "drop" and solution.scene.motion.drop), x

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..reading.names import read_name, read_quantities
 from ..solver.decisions import REGIME_ASSUMED, Decisions
 from ..solver.quantities import ACCURACIES, Accuracy
-from ..solver.scene import INPUTS, MASSES, MISSING_MASS, SceneError
+from ..solver.scene import INPUTS, MASSES, MISSING_MASS, SceneError, Terms
 from .inputs import STATUSES as STATUSES
 from .inputs import VALID as VALID
 from .inputs import GivenColumn, Numbers, groups, read_column
@@ -85,9 +85,15 @@ def solve_arrays(
 
 
 def solve_and_count(
-    given: Mapping[str, Numbers | None], accuracy: Accuracy, quantities: Sequence[str] | None
+    given: Mapping[str, Numbers | None],
+    accuracy: Accuracy,
+    quantities: Sequence[str] | None,
+    terms: Mapping[str, Terms] = {},
 ) -> tuple[dict[str, NDArray[Any]], Counter[tuple[str, str]]]:
-    """Solve as `solve_arrays`, and count the rows by what is missing, or only assumed, and why."""
+    """Solve as `solve_arrays`, and count the rows by what is missing, or only assumed, and why.
+
+    ``terms`` are those of inputs that are given in others than their own, as weights.
+    """
     names = tuple(read_quantities(quantities))
     read_name("accuracy", str(accuracy), ACCURACIES, "accuracy", {})  # raises if it is none
     inputs, shape = _read(given)
@@ -102,7 +108,7 @@ def solve_and_count(
         doubles = {name: column.doubles for name, column in given_columns.items()}
         rows = Rows(doubles, {name: flat[name][chunk] for name in results}, accuracy)
         with np.errstate(all="ignore"):
-            _solve(rows, given_columns, names)
+            _solve(rows, given_columns, names, terms)
         return rows.reasons
 
     # Chunks have a fixed size, so that no digit depends on the number of cores.
@@ -131,10 +137,12 @@ def _read(given: Mapping[str, Numbers | None]) -> tuple[dict[str, GivenColumn], 
     return inputs, shape
 
 
-def _solve(rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...]) -> None:
+def _solve(
+    rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...], terms: Mapping[str, Terms]
+) -> None:
     """Write the status of all rows, and the quantities, which have no value in invalid rows."""
     size = len(rows.results["status"])
-    for group in groups(given, size):
+    for group in groups(given, size, terms):
         rows.results["status"][group.rows] = group.status
         if group.pattern:
             level = len(LEVELS[rows.accuracy]) if group.beyond_window else 0

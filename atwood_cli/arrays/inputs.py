@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..reading.inputs import is_missing
-from ..solver.scene import DEFAULTS, INERTIA_FACTORS, INPUTS, MASSES, SceneError
+from ..solver.scene import DEFAULTS, INERTIA_FACTORS, INPUTS, MASSES, SceneError, Terms
 from .doubles import WINDOW, Column
 from .plan import COLUMN, Pattern
 
@@ -26,6 +26,8 @@ IF_ABSENT = {name: Fraction(default) for name, default in {**DEFAULTS, "inertia"
 """The exact values of inputs that always have one, in SI units and degrees."""
 WHERE_ABSENT = {**{name: float(default) for name, default in IF_ABSENT.items()}, "axle": 0.0}
 """The doubles in columns of inputs for rows in which they are not given; for other inputs it is NaN."""
+NEARLY_EQUAL = 1e-14
+"""The share of a mass by which doubles cannot tell a weight's mass from another mass."""
 BUILT_IN = ("inertia", "wrap")
 """Inputs whose common value is built into a program: with 1/2 and π it is simpler than with a column."""
 REAL_KINDS = "iufOSU"
@@ -142,20 +144,20 @@ class Group(NamedTuple):
     """Whether an input is beyond the window of `doubles`."""
 
 
-def _kinds(name: str, given: Mapping[str, GivenColumn]) -> NDArray[np.int_]:
+def _kinds(name: str, given: Mapping[str, GivenColumn], terms: Mapping[str, Terms]) -> NDArray[np.int_]:
     """Return the kind of each number of an input, or the one kind of all, without dimension.
 
     The equations take I as the mass I/R² and the axle's friction as the mass f/g. So these must be within the
-    window, too.
+    window, as must an input in its own terms.
     """
     (doubles, absent), (low, high) = given[name], WINDOW
     if absent is not None and absent.all():
         return np.array(Kind.ABSENT)
-    sizes = [doubles]
+    sizes = [doubles, own := _own(name, given, terms)]
     if name == "I":
         sizes.append(doubles / given["R"].doubles / given["R"].doubles)
     if name == "axle":
-        sizes.append(doubles / given["g"].doubles)
+        sizes.append(own / given["g"].doubles)
     if absent is None and all(low < size.min() and size.max() < high for size in sizes):
         return np.array(Kind.USUAL)
     is_kind = [
@@ -173,15 +175,41 @@ def _kinds(name: str, given: Mapping[str, GivenColumn]) -> NDArray[np.int_]:
     return kinds
 
 
-def groups(given: Mapping[str, GivenColumn], size: int) -> Iterator[Group]:
+def _own(name: str, given: Mapping[str, GivenColumn], terms: Mapping[str, Terms]) -> Column:
+    """Return an input in its own terms, in doubles."""
+    doubles = given[name].doubles
+    return terms[name].own(doubles, given[terms[name].by].doubles) if name in terms else doubles
+
+
+def _heavier(given: Mapping[str, GivenColumn], terms: Mapping[str, Terms], size: int) -> NDArray[np.int_]:
+    """Return 1 where m2 is the heavier mass, -1 where m1 is, else 0."""
+    if terms.get("m1") == terms.get("m2"):
+        m1, m2 = (given[name].doubles for name in MASSES)
+        return 1 * (m2 > m1) - (m2 < m1)
+    m1, m2 = (np.broadcast_to(_own(name, given, terms), size) for name in MASSES)
+    order = 1 * (m2 > m1) - (m2 < m1)
+    for row in np.flatnonzero(np.abs(m2 - m1) <= NEARLY_EQUAL * m1).tolist():  # a weight beside a mass
+        exact = {name: _exact(name, given[name], row) for name in (*MASSES, "g")}
+        one, other = (terms[x].own(exact[x], exact["g"]) if x in terms else exact[x] for x in MASSES)
+        order[row] = (other > one) - (other < one)
+    return order
+
+
+def _exact(name: str, given: GivenColumn, row: int) -> Fraction:
+    is_absent = given.absent is not None and _number(given.absent, row)
+    return IF_ABSENT[name] if is_absent else Fraction(float(_number(given.doubles, row)))
+
+
+def groups(given: Mapping[str, GivenColumn], size: int, terms: Mapping[str, Terms]) -> Iterator[Group]:
     """Yield the rows of a chunk, grouped by their status and pattern."""
-    m1, m2, mu, mu_k = (given[name].doubles for name in ("m1", "m2", "mu", "mu_k"))
-    columns = {name: _kinds(name, given) for name in given}
+    mu, mu_k = (given[name].doubles for name in ("mu", "mu_k"))
+    columns = {name: _kinds(name, given, terms) for name in given}
+    heavier = _heavier(given, terms, size)
     mu_k_above = mu_k > mu  # false where one is not given, as it is NaN there
     # Rows differ by the digits of a key, each with its base: kinds, the heavier mass, a mu_k above mu.
     digits: list[tuple[int, NDArray[Any]]] = [(len(Kind), kinds) for kinds in columns.values() if kinds.ndim]
-    if not (m2 > m1).all():
-        digits.append((3, np.where(m1 > m2, 1, np.where(m1 == m2, 2, 0))))
+    if not (heavier == 1).all():
+        digits.append((3, heavier + 1))
     if mu_k_above.any():
         digits.append((2, mu_k_above))
     keys, weight = np.zeros(1, np.int64), 1
@@ -193,16 +221,15 @@ def groups(given: Mapping[str, GivenColumn], size: int) -> Iterator[Group]:
         rows = np.flatnonzero(keys == key) if digits else slice(0, size)
         row = 0 if isinstance(rows, slice) else int(rows[0])
         kinds = {name: int(_number(column, row)) for name, column in columns.items()}
-        if status := STATUSES.index(_fault(kinds, bool(_number(mu_k_above, row)))):
+        if status := STATUSES.index(_fault(kinds, bool(_number(mu_k_above, row)), terms)):
             yield Group(rows, status, None, False)
             continue
         pattern = {name: _in_pattern(name, kinds[name], column.doubles) for name, column in given.items()}
         if pattern["I"] is not None:
             pattern["inertia"] = None
-        mass_1, mass_2 = _number(m1, row), _number(m2, row)
-        sign = int(mass_2 > mass_1) - int(mass_2 < mass_1)
-        beyond_window = Kind.BEYOND_WINDOW in kinds.values()
-        yield Group(rows, status, Pattern(sign, tuple(pattern.values())), beyond_window)
+        sign, beyond_window = int(_number(heavier, row)), Kind.BEYOND_WINDOW in kinds.values()
+        in_terms = tuple((name, terms[name]) for name in terms if pattern[name] == COLUMN)
+        yield Group(rows, status, Pattern(sign, tuple(pattern.values()), in_terms), beyond_window)
 
 
 def _number(column: NDArray[Any], row: int) -> Any:
@@ -210,7 +237,7 @@ def _number(column: NDArray[Any], row: int) -> Any:
     return column[row] if column.ndim else column[()]
 
 
-def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool) -> str:
+def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool, terms: Mapping[str, Terms]) -> str:
     """Return the first fault of inputs of these kinds: whether they are in their domains and go together."""
     given = {name for name, kind in kinds.items() if kind != Kind.ABSENT}
     zero = {name for name, kind in kinds.items() if kind == Kind.ZERO}
@@ -218,6 +245,7 @@ def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool) -> str:
         *(("NaN", kind == Kind.NAN) for kind in kinds.values()),
         *((name, kind in OUTSIDE[name]) for name, kind in kinds.items()),
         *((name, name not in given) for name in MASSES),
+        *((name, name in given and terms[name].by not in {*given, *DEFAULTS}) for name in terms),
         ("I and inertia", given >= {"I", "inertia"}),
         ("no mass", zero >= {"m1", "m2"}),
         ("friction at a free end", bool(zero & {"m1", "m2"}) and "mu" in given),

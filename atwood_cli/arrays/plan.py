@@ -43,7 +43,7 @@ from ..numbers.settling import settle
 from ..solver.decisions import Decisions, LimitingCase
 from ..solver.machine import Machine
 from ..solver.quantities import REGIMES, Accuracy, Undetermined
-from ..solver.scene import INPUTS, Angle, Scene
+from ..solver.scene import INPUTS, Angle, Scene, Terms
 from .doubles import DOUBLES, Doubles, NoProgram, equal, less, proven_double
 from .pairs import PAIRS
 from .program import Program
@@ -62,11 +62,13 @@ COLUMN = "column"
 class Pattern(NamedTuple):
     """What rows have in common before any question: which mass is heavier (`Decisions.sign`), and each input.
 
-    An input is None (not given), inf, a Fraction that is the same in all rows, or COLUMN.
+    An input is None (not given), inf, a Fraction that is the same in all rows, or COLUMN. ``terms`` are those
+    of columns that are not in the terms of their input.
     """
 
     sign: int
     inputs: tuple[Fraction | float | str | None, ...]
+    terms: tuple[tuple[str, Terms], ...] = ()
 
     def scene(self, column: Callable[[str], Any]) -> Scene:
         """Return the scene of a row, or of all rows; ``column`` gives the number of an input by its name."""
@@ -75,6 +77,7 @@ class Pattern(NamedTuple):
             for name, value in zip(INPUTS, self.inputs, strict=True)
         }
         fields["wrap"] = Angle(fields["wrap"])
+        fields |= {name: terms.own(fields[name], fields[terms.by]) for name, terms in self.terms}
         return Scene(**fields)
 
 

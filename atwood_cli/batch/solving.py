@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import polars as pl
 
 ERROR = "error"
-VOCABULARY = Vocabulary({name.replace("_", ""): name for name in INPUTS})
+VOCABULARY = Vocabulary({name.replace("_", ""): name for name in INPUTS}, in_terms=True)
 
 GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
 LONG_CELL = 100
@@ -90,7 +90,7 @@ def _meant(column: str) -> str | None:
     words = [word for word in re.split("[^0-9a-z]+", letters) if word]
     if meant := OTHER_NAMES.get("_".join(words)):
         return meant
-    if (meant := OTHER_NAMES.get("_".join(words[:-1]))) and (dimension := parameter_of(meant).dimension):
+    if (meant := OTHER_NAMES.get("_".join(words[:-1]))) and (dimension := parameter_of(meant).dimensions):
         with suppress(Malformed):
             read_unit(re.split(r"[\W_]+", name)[-1], dimension)
             return meant
@@ -154,7 +154,8 @@ def solve_cells(
         rows = rows.filter(~rows.is_in([*errors]))
         doubles = doubles[rows]
     given: Any = doubles.to_dict()
-    solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names])
+    terms = {one.name: one.terms for one in columns.headings if one.terms}
+    solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names], terms)
     bad = rows.filter(pl.Series(solved.pop("status")) != VALID)
     why = cache(partial(_why, columns))  # as many rows may be alike
     errors |= dict(zip(bad, map(why, cells[bad].iter_rows()), strict=True))

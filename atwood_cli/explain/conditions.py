@@ -30,7 +30,6 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "<=": operator.le,
     ">": operator.gt,
     ">=": operator.ge,
-    "==": operator.eq,
 }
 CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
@@ -63,8 +62,8 @@ def read_condition(typed: str) -> Condition:
         value = read_number(number, DIMENSIONS.get(QUANTITIES[name].unit))
     except Malformed as error:
         raise SceneError("expect", typed, f"compares with {in_quotes(number)}, which {error}") from None
-    if value.uncertainty:
-        rule = f"compares with an uncertain number; give two conditions, '{name} >= LOW' and '{name} <= HIGH'"
+    if value.uncertainty and sign != "==":
+        rule = "compares with an uncertain number, which only == takes: it holds within the uncertainty"
         raise SceneError("expect", typed, rule)
     return Condition(typed.strip(), name, sign, value)
 
@@ -88,8 +87,14 @@ def _holds(answers: Answers, expected: Condition) -> bool:
     """Decide whether a condition is true; a comparison is not if the quantity has no finite value."""
     if expected.name in REGIMES:
         return answers.decided.regime == expected.name
+    number = expected.number
     try:
-        return bool(OPERATORS[expected.sign](_above(answers, expected), 0))
+        if expected.sign == "==":
+            least, most = (
+                number._replace(value=number.value + u) for u in (-number.uncertainty, number.uncertainty)
+            )
+            return bool(_above(answers, expected.name, most) <= 0 <= _above(answers, expected.name, least))
+        return bool(OPERATORS[expected.sign](_above(answers, expected.name, number), 0))
     except (Undetermined, ArithmeticError):
         return False
 
@@ -103,19 +108,23 @@ def _instead(answers: Answers, expected: Condition) -> str:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
         return f"{expected.name} has {why}"
     given = None if expected.number.unit == "rad" else _in_si(expected.number, answers.decided.scene)
-    if given is not None and not _above(answers, expected):  # digits would not show that the two are equal
+    if given is not None and not _above(
+        answers, expected.name, expected.number
+    ):  # digits would not show that the two are equal
         shown = as_typed(given)
     else:
         value = answers.rounded(expected.name, rounding_apart_from(given, answers.digits or SHOWN_DIGITS))
         shown = "too large to be written out" if is_infinite(value) else format_number(value)
-    return f"it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
+    is_exact = expected.sign == "==" and given and not expected.number.uncertainty
+    hint = "; a rounded number takes its uncertainty, as 'a == 2.17926(1)' or 2.179±0.001" if is_exact else ""
+    return f"it is {with_unit(shown, QUANTITIES[expected.name].unit)}{hint}"
 
 
-def _above(answers: Answers, expected: Condition) -> float | Decimal:
+def _above(answers: Answers, name: str, number: TypedNumber) -> float | Decimal:
     """Return a quantity less the number that it is compared with, to one digit. Raises Undetermined."""
 
     def difference(machine: Any) -> Any:
-        return getattr(machine, expected.name) - _bound(machine, expected.number)
+        return getattr(machine, name) - _bound(machine, number)
 
     return answers.settle(difference, to_digits(1))
 

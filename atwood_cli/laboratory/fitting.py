@@ -14,7 +14,7 @@ from ..numbers.text import counted
 from ..reading.names import read_names
 from ..solver import physics
 from ..solver.decisions import Decisions
-from ..solver.scene import Input, Scene, SceneError, parameter_of
+from ..solver.scene import Input, InTerms, Scene, SceneError, parameter_of
 from .estimate import (
     TINY,
     Data,
@@ -101,7 +101,8 @@ def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
         if u and not parameter_of(x).may_be_zero and u >= size:
             raise SceneError(x, one.given, "has an uncertainty that reaches 0")
         if u:
-            ends = (one.value._replace(number=end) if x == "axle" else end for end in (size - u, size + u))
+            is_in_terms = isinstance(one.value, InTerms)
+            ends = (one.value._replace(number=end) if is_in_terms else end for end in (size - u, size + u))
             yield [conditions_of({**given.inputs, x: Input(end, Fraction(0), one.given)}) for end in ends]
 
 

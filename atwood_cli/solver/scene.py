@@ -96,7 +96,7 @@ if TYPE_CHECKING:
 else:
     OfNumPy = float
 
-Given = str | int | float | Decimal | Fraction | Angle | InTerms | OfNumPy
+Given = str | int | float | Decimal | Fraction | Angle | OfNumPy
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
 
 INERTIA_FACTORS = {"disk": "1/2", "hoop": "1", "ring": "1", "sphere": "2/5", "shell": "2/3"}

@@ -18,8 +18,8 @@ from unicodedata import normalize
 
 from ..numbers.text import in_quotes, without_blanks
 from ..reading.inputs import read_input
-from ..reading.units import PERCENT, Malformed, read_unit
-from ..solver.scene import Input, SceneError, parameter_of
+from ..reading.units import PERCENT, Malformed, read_unit, terms_of
+from ..solver.scene import Input, InTerms, SceneError, Terms, parameter_of
 from .sources import Unreadable
 
 SEPARATORS = ",\t;"
@@ -43,12 +43,14 @@ class Vocabulary(NamedTuple):
     """The quantities that columns may hold.
 
     ``names`` maps each spelling, without blanks and underscores, to a parameter of the model. A quantity in
-    ``repeated`` may have several columns, with numbers. Columns of uncertainties are known if ``uncertain``.
+    ``repeated`` may have several columns, with numbers. Columns of uncertainties are known if ``uncertain``,
+    and units of other terms, as those of weights, if ``in_terms``.
     """
 
     names: Mapping[str, str]
     repeated: Collection[str] = ()
     uncertain: bool = False
+    in_terms: bool = False
 
 
 class Heading(NamedTuple):
@@ -66,6 +68,7 @@ class Heading(NamedTuple):
     factor: Fraction = ONE
     u: "Heading | None" = None
     uncertain: bool = False
+    terms: Terms | None = None
 
 
 # Headings
@@ -107,7 +110,9 @@ def read_headings(
             one, other = (same.column, column) if column in named else (column, same.column)
             why = f"holds {found.name}, as {in_quotes(other)} does; {way}"
             raise refused(one, why) if one != other else Unreadable(f"column {in_quotes(one)} {why}")
-        headings[key] = found._replace(number=key[1], factor=unit_factor(found.name, found.unit, column))
+        terms = terms_of(parameter_of(found.name), found.unit) if vocabulary.in_terms else None
+        factor = unit_factor(found.name, found.unit, column, vocabulary.in_terms)
+        headings[key] = found._replace(number=key[1], factor=factor, terms=terms)
     for found in uncertain:
         _add_uncertainty(headings, found)
     return list(headings.values())
@@ -196,13 +201,14 @@ def _add_uncertainty(headings: dict[tuple[str, str], Heading], found: Heading) -
         headings[own.name, own.number] = own._replace(u=u)
 
 
-def unit_factor(name: str, unit: str, column: str) -> Fraction:
+def unit_factor(name: str, unit: str, column: str, in_terms: bool = False) -> Fraction:
     """Return the factor from the unit of a column to SI units, or to degrees. Raises Unreadable."""
     if not unit:
         return ONE
-    dimension = parameter_of(name).dimension
+    parameter = parameter_of(name)
+    dimension = parameter.dimensions if in_terms else parameter.dimension
     try:
-        if dimension is None:
+        if not dimension:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
         if dimension == "angle" and unit.lower().startswith("rad"):
             raise Malformed("has angles in radians; give degrees or turns")
@@ -273,6 +279,10 @@ def read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None
         value, uncertainty, _ = read_input(heading.name, text)
     except SceneError as error:
         raise SceneError(heading.name, cell, error.rule) from None
+    if isinstance(value, InTerms):
+        raise SceneError(
+            heading.name, cell, f"is {value.terms.words}; give it in {parameter_of(heading.name).unit}"
+        )
     factor = ONE if OWN_UNIT.search(text) else heading.factor
     value, uncertainty = value * factor, uncertainty * factor
     if heading.u and (u := row[heading.u.place].strip()) not in EMPTY:
