@@ -14,11 +14,12 @@ from typer.core import TyperCommand
 from .. import __version__
 from ..numbers.text import LONGEST_NAME, naming_the_extra, shortened
 from ..output.text import drop, finish, say
+from ..reading.inputs import OTHER_NAMES
 from ..solver.scene import SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_options
 
 COMMANDS = ("solve", "sweep", "contact", "fit", "batch", "quantities", "tradeoff")
-HELP = """Solve Atwood's machine with pulley mass and friction, every digit right.
+HELP = """Solve Atwood's machine (both masses hang) with pulley mass and friction, every digit right.
 
 \b
 Examples:
@@ -31,6 +32,12 @@ Examples:
 """
 
 DASHES = "-–—"
+OPTIONS_MEANT = {
+    **OTHER_NAMES,
+    **dict.fromkeys("v velocity v_final vf final_speed final_velocity".split(), "speed"),
+    **{"t": "time", "acceleration": "a", **dict.fromkeys("h height distance s".split(), "drop")},
+}
+"""The options that other words may mean."""
 # The parent of all usage errors, which typer does not export.
 UsageError: Any = typer.BadParameter.__base__
 ON_CTRL_C = 130
@@ -48,7 +55,8 @@ class Command(TyperCommand):
         for word, value in zip(args, [*args[1:], ""], strict=False):
             name = word.partition("=")[0]
             meant = f"--{name.lstrip(DASHES)}"  # word processors make such dashes of two
-            alike = [flag for flag in options if flag.lower() == meant.lower()]
+            guess = flag(OPTIONS_MEANT.get(name.strip(DASHES).lower().replace("-", "_"), ""))
+            alike = [flag for flag in options if flag.lower() in (meant.lower(), guess.lower())]
             if alike and name not in options and name[0] in DASHES:
                 raise UsageError(f"No such option: {name}. Did you mean {alike[0]}?", ctx)
             if name not in options or options[name].is_flag:
@@ -128,6 +136,13 @@ def run(arguments: list[str] | None = None) -> int:
         say(error.describe(flag(error.parameter)))
         return WRONG_USAGE
     except UsageError as error:
+        if possible := getattr(error, "possibilities", None):  # typer's are not that close
+            from difflib import get_close_matches
+
+            close = get_close_matches(
+                error.option_name.strip(DASHES), [word.strip(DASHES) for word in possible]
+            )
+            error.possibilities = [flag(word) for word in close]
         hint = f"{error.ctx.command_path} -h" if error.ctx else ""
         words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
         message = shortened(words, LONGEST_NAME)

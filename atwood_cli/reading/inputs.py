@@ -174,6 +174,10 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
     numbers = [shortened(number) for number in meant if NUMBER.fullmatch(number)]
     if "," in word and numbers:
         return f"is not a number; write {' or '.join(numbers)}, without a comma"
+    if parameter == MEASURED["a"] and re.search(r"[*^²/] ?\(?[\d.]", word):
+        return (
+            "is not a number; if a fall gives it, give two of drop, time and speed (--drop, --time, --speed)"
+        )
     if parameter.dimension == "time" and ":" in word:
         return "is no time; write minutes and seconds as 1:02.50"
     if not word.isascii() and re.search("[0-9]", word):

@@ -166,7 +166,7 @@ def _split_uncertainty(text: str) -> tuple[str, str]:
     if match and match[4].endswith(PERCENT):
         return match[1] + match[2], match[3] + PERCENT
     if not match or match[2] not in ("", match[4]):
-        if re.search(r"[^\W\d] ?\(", text):  # a function, as sin(20)
+        if re.search(r"[^\W\d] ?\(|[*/^] ?\(", text):  # a function, as sin(20), or an expression
             raise NotANumber(NOT_A_NUMBER)
         raise Malformed(NOT_UNCERTAIN)
     return match[1] + match[4], match[3] + match[4]

@@ -377,7 +377,12 @@ def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
     m1, m2, M, mu, mu_k, _, inertia, I, R, *_ = values.values()
     for mass in MASSES:
         if values[mass] is None and mass != unknown:
-            refuse(mass, MISSING_MASS)
+            refuse(
+                mass,
+                MISSING_MASS
+                if M is I is None
+                else f"{MISSING_MASS}; {mass} = 0 is an end fixed to the pulley",
+            )
     if I is not None and inertia is not None:
         refuse("I", "and inertia both describe the pulley; give one of them")
     if I is None and inertia is None:
