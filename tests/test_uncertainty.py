@@ -14,7 +14,7 @@ from unittest.mock import patch
 import pytest
 
 from atwood_cli import SceneError, solve
-from atwood_cli.numbers.digits import rounding_to_place, to_digits, with_uncertainty
+from atwood_cli.numbers.digits import rounding_to_uncertainty, to_digits, with_uncertainty
 from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.decisions import Decisions
@@ -242,8 +242,9 @@ SIZES = {
 @pytest.mark.parametrize("numbers", SIZES)
 def test_numbers_of_every_size(numbers: str) -> None:
     value, u = map(Decimal, numbers.split())
-    assert with_uncertainty(lambda place: rounding_to_place(place)(value), u) == SIZES[numbers]
-    assert with_uncertainty(lambda place: rounding_to_place(place)(Fraction(value)), u) == SIZES[numbers]
+    round_ = rounding_to_uncertainty(u)
+    for exact in (value, Fraction(value)):
+        assert with_uncertainty(round_(exact), round_(u))[0] == SIZES[numbers]
 
 
 def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:

@@ -12,6 +12,7 @@ from .interval import ZERO, decimal_context
 from .rational import OfFloat
 
 T = TypeVar("T", bound=float | Decimal)
+Number = TypeVar("Number", float, Decimal)
 Rounding = Callable[[Fraction | Decimal], T]
 
 DOUBLE_DIGITS, SHOWN_DIGITS = 17, 6
@@ -110,14 +111,24 @@ def exact_or_rounded(q: Fraction, round_: Rounding[T]) -> T | Decimal:
     return round_(q) if value is None else value
 
 
-def with_uncertainty(round_to: Callable[[int], Decimal], u: Decimal) -> str:
-    """Return a value and its standard uncertainty u > 0, rounded at the second digit of u: 0.764 ± 0.012.
+def half_range(numbers: Sequence[Number]) -> Number:
+    """Return half the range of a result at an uncertain input and at both its ends (Kragten's step)."""
+    return (max(numbers) - min(numbers)) / 2
 
-    ``round_to`` returns the value rounded to a multiple of 10^place, as `rounding_to_place` does.
+
+def rounding_to_uncertainty(u: Fraction | Decimal) -> Rounding[Decimal]:
+    """Return a function that rounds at the second digit of a standard uncertainty u > 0."""
+    return rounding_to_place(to_digits(2)(u).adjusted() - 1)
+
+
+def with_uncertainty(value: Decimal, u: Decimal, ends: Sequence[Decimal] = ()) -> tuple[str, str]:
+    """Return a value with its uncertainty, 0.764 ± 0.012, and its interval, 0.740 to 0.788, "" without ends.
+
+    They share a power of ten: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
     """
-    place = to_digits(2)(u).adjusted() - 1
-    pair = round_to(place), rounding_to_place(place)(u)
-    return share_exponent("{:f} ± {:f}", pair, max(x.adjusted() for x in pair if x))
+    power = max(x.adjusted() for x in (value, u) if x)
+    both = share_exponent("{:f} ± {:f}", (value, u), power)
+    return both, share_exponent("{:f} to {:f}", ends, power) if ends else ""
 
 
 def share_exponent(form: str, numbers: Sequence[Decimal], power: int) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..explain.contact import Contact
 from ..explain.messages import measured_quantities, notes, reasons, remarks, unmarked, verdict
-from ..numbers.digits import rounding_to_place, strip_zeros, with_uncertainty
+from ..numbers.digits import rounding_to_place, rounding_to_uncertainty, strip_zeros, with_uncertainty
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import MEASURED_NAMES, QUANTITIES, cited
@@ -169,7 +169,10 @@ def _with_uncertainty(answers: Answers, name: str) -> str:
     """Return a value, with its uncertainty if it has one; "" if it has no value."""
     shown = cell(answers[name])
     u = answers.uncertainty(name, 2) if shown else None
-    return with_uncertainty(lambda place: answers.rounded(name, rounding_to_place(place)), u) if u else shown
+    if not u:
+        return shown
+    round_ = rounding_to_uncertainty(u)
+    return with_uncertainty(answers.rounded(name, round_), round_(u))[0]
 
 
 def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = None) -> None:

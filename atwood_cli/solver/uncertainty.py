@@ -22,6 +22,7 @@ from ..numbers.digits import (
     Rounding,
     as_typed,
     format_number,
+    half_range,
     is_infinite,
     strip_zeros,
     to_digits,
@@ -145,9 +146,9 @@ class UncertainAnswers(Answers):
         with localcontext(CONTEXT):
             for x, values in ends.items():
                 numbers = [here, *(value.number for value in values if value.number is not None)]
-                size = max(numbers) - min(numbers)
-                if size > NEGLIGIBLE * max(map(abs, numbers)) or is_infinite(size):
-                    steps[x] = size / 2
+                step = half_range(numbers)
+                if 2 * step > NEGLIGIBLE * max(map(abs, numbers)) or is_infinite(step):
+                    steps[x] = step
             variance = sum((step * step for step in steps.values()), ZERO)
         self._spreads[name] = Spread(here, ends, steps, variance)
         return self._spreads[name]
