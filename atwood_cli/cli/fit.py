@@ -8,6 +8,7 @@ from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..output.text import Destination, say, show
 from ..reading.names import divided, read_names
 from ..solver.scene import SceneError
+from ..tables.sources import Unreadable, cannot_read
 from .options import (
     COULD_NOT,
     DONE,
@@ -106,7 +107,10 @@ def fit(
     from ..laboratory import fit_of
     from ..laboratory.report import report_of
 
-    best = fit_of(table, given, find or [], label or [], divided(without or []), column or [])
+    try:
+        best = fit_of(table, given, find or [], label or [], divided(without or []), column or [])
+    except Unreadable as error:
+        raise cannot_read(table, error) from None
     if figure is not None:
         from ..laboratory.fit_figure import save
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
-from ..numbers.text import naming_the_extra, without_blanks
+from ..numbers.text import naming_the_extra, sentence, without_blanks
 from ..reading.inputs import read_input
 from ..reading.names import divided
-from ..solver.scene import INPUTS, Given, SceneError
+from ..solver.scene import INPUTS, Given
 from ..tables.sources import Unreadable
 from .results import Fit as Fit
 
@@ -62,25 +61,23 @@ def fit(
         ImportError: SciPy is missing.
         ArithmeticError: The runs do not determine the quantities, or no pulley explains them.
     """
+    from ..tables.sources import cannot_read
+
     with naming_the_extra():
         from .report import results_of
+        from .statistics import CannotSeparate
 
     given = {"g": g, "M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "drop": drop}
     names = [find] if isinstance(find, str) else find or ()
     left_out = divided([str(without)]) if isinstance(without, str | int) else without
     try:
-        found = results_of(fit_of(runs, given, names, without=left_out))
-    except SceneError:
-        raise
-    except (ValueError, ArithmeticError) as error:
-        raise type(error)(_in_python(str(error))) from None
-    return found._replace(notes=[*map(_in_python, found.notes)])
-
-
-def _in_python(words: str) -> str:
-    """Return a sentence with the parameters of `fit` for options, and without those that it lacks."""
-    words = re.sub("(?<=give )--", "", words)
-    return re.sub(r"--(find|without) (\S*[^\s.,;:)])", r"\1='\2'", words)
+        return results_of(fit_of(runs, given, names, without=left_out), in_python=True)
+    except CannotSeparate as error:
+        raise ArithmeticError(sentence(error.args, in_python=True)) from None
+    except Unreadable as error:
+        if isinstance(runs, str | PathLike):
+            raise cannot_read(fspath(runs), Unreadable(str(error))) from None
+        raise ValueError(f"cannot read the runs: {error}") from None
 
 
 def fit_of(
@@ -91,12 +88,11 @@ def fit_of(
     without: Collection[int | str] = (),
     columns: Sequence[str] = (),
 ) -> Fitted:
-    """Return the fit of a table, which may be "-" for stdin. Raises as `fit` does.
+    """Return the fit of a table, which may be "-" for stdin. Raises SceneError, Unreadable, CannotSeparate.
 
     ``columns`` are words NAME=HEADING, ``labels`` headings that belong to no run.
     """
     from ..tables.headings import read_named
-    from ..tables.sources import cannot_read
     from .fitting import conditions_of, fitted, read_find
     from .runs import VOCABULARY, read_runs
 
@@ -104,10 +100,5 @@ def fit_of(
     inputs = {x: read_input(x, given.get(x)) for x in dict.fromkeys((*INPUTS, *known))}
     same, named = conditions_of(inputs), read_named(map(without_blanks, columns), VOCABULARY)
     names = read_find(find, same)
-    try:
-        labels = [*map(without_blanks, labels)]
-        return fitted(read_runs(table, labels, inputs.get("drop"), without, named), same, names)
-    except Unreadable as why:
-        if isinstance(table, str | PathLike):
-            raise cannot_read(fspath(table), why) from None
-        raise ValueError(f"cannot read the runs: {why}") from None
+    labels = [*map(without_blanks, labels)]
+    return fitted(read_runs(table, labels, inputs.get("drop"), without, named), same, names)

@@ -6,19 +6,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.special import fdtrc
 
 from ..solver import physics
-from .results import FITTED, Result
+from .results import FITTED
 from .runs import Column, Places, Runs, Selection
-from .statistics import NORMAL_DOF, CannotSeparate, Line, Linear, fit_line, sum_of_squares
+from .statistics import NORMAL_DOF, CannotSeparate, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
-NEAR, ENOUGH, CLOSE, MOST_PASSES = 1e-2, 1e-6, 1e-11, 100
+NEAR, ENOUGH, CLOSE, MOST_STEPS, MOST_SEARCHES = 1e-2, 1e-6, 1e-11, 100, 10
 """Shares of what is expected. A step below ``NEAR`` is linear, and one below ``CLOSE`` is the last.
 
 Linear steps lead away from some least squares of rough runs; then a step below ``ENOUGH`` is the last, too.
+After ``MOST_SEARCHES`` steps that are not linear none will be.
 """
 ROUNDING = 1e-12
 """The least standard uncertainty of a measured number, as a share of it."""
@@ -30,8 +30,7 @@ class Data(NamedTuple):
 
     ``drop`` is None for accelerations. ``measured`` are means of so many values as ``counts`` says.
     ``scatter`` is the standard uncertainty of a mean, ``stated`` or by its repeats, 0 without either.
-    ``repeats`` are χ² and the degrees of freedom of the repeats about their means. ``uncertain`` has the
-    uncertainties of other columns.
+    Its variance has ``known_dof`` degrees of freedom. ``uncertain`` has the uncertainties of other columns.
     """
 
     l: Column
@@ -41,31 +40,8 @@ class Data(NamedTuple):
     counts: Places
     scatter: Column
     stated: bool
-    repeats: tuple[float, int]
+    known_dof: float
     uncertain: Mapping[str, Column]
-
-
-class Estimate(NamedTuple):
-    """The fitted values, of these ``names``, and the given ones, with the linear fit at these values.
-
-    ``sigma`` is the standard uncertainty of each run's measurement, scatter between runs included, and
-    ``dof`` the number of runs less that of fitted quantities. ``chi2`` is that of the runs by the
-    uncertainties stated, or by the scatter of repeats; None without either. ``p_value`` is the probability
-    that chance gives a larger one, by an F test if repeats alone show the scatter. ``between_runs`` is the
-    standard deviation between runs beyond that, as a mass (kg). Both are None if nothing is left to test.
-    """
-
-    data: Data
-    values: Mapping[str, float]
-    names: Sequence[str]
-    line: Line
-    sigma: Column
-    dof: int
-    chi2: float | None = None
-    p_value: float | None = None
-    is_f_test: bool = False
-    between_runs: float | None = None
-    results: Mapping[str, Result] = {}
 
 
 def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
@@ -79,19 +55,18 @@ def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
     measured = np.bincount(run, weight * values) / total
     chi2 = sum_of_squares(np.sqrt(weight) * (values - measured[run]))
     dof = len(values) - len(counts)
-    factor = chi2 / dof if dof else 0.0  # the variance of a value, in units of what is stated
-    if stated:
-        factor = max(factor, 1.0)
+    factor, known_dof = (chi2 / dof, float(dof)) if dof and chi2 else (0.0, NORMAL_DOF)
+    if stated:  # the variance of a value, in units of what is stated
+        factor, known_dof = max(factor, 1.0), NORMAL_DOF
     variance = factor / total
     if dof and not stated:
         variance = variance + runs.step**2 / 12
-    repeats = (chi2 / factor, dof) if factor else (0.0, 0)
     columns = {x: np.stack([runs.given[x][used], runs.u[x][used]]) for x in runs.given}
     m1, m2 = columns["m1"], columns["m2"]
     (l, u_l), (h, u_h) = np.where(m1[0] > m2[0], (m2, m1), (m1, m2))
     drop, u_drop = columns.get("drop", (None, 0 * l))
     uncertain = {x: u for x, u in (("l", u_l), ("h", u_h), ("drop", u_drop)) if u.any()}
-    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, repeats, uncertain)
+    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, known_dof, uncertain)
 
 
 # What is expected of runs
@@ -142,23 +117,28 @@ def slope(residual: Residual, data: Data, values: Mapping[str, Any], name: str) 
     return residual(data, {**values, name: x + 1j * TINY}).imag / TINY
 
 
-def linear(residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]) -> Linear:
-    """Return the linear fit of changes of the ``names``, at these values.
+def slopes(residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]) -> Any:
+    """Return the derivatives of what is expected, or of c a + f, by the values of these names: (n, p)."""
+    columns = [-slope(residual, data, values, name) for name in names]
+    return np.stack(columns, 1) if names else np.zeros((len(data.l), 0))
+
+
+def line_of(residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]) -> Line:
+    """Return the linear fit of changes of the ``names``, at these values. Raises CannotSeparate.
 
     The unknown variance has the shape of a force that differs between runs, or of the scatter of single
     values if nothing shows that.
     """
-    slopes = [-slope(residual, data, values, name) for name in names]
     by_measured = slope(residual, data, values, "measured")
-    least = float(np.square(ROUNDING * by_measured * data.measured).max())
-    known = (by_measured * data.scatter) ** 2 + least  # no weight is without bound
+    known = (by_measured * data.scatter) ** 2
+    known = known + float(np.square(ROUNDING * by_measured * data.measured).max())  # no weight has no bound
     for name, u in data.uncertain.items():
         known = known + (slope(residual, data, values, name) * u) ** 2
     shape = by_measured**2 / data.counts
     if data.scatter.any():
         shape = slope(residual, data, values, "axle") ** 2
-    J = np.stack(slopes, 1) if names else np.zeros((len(known), 0))
-    return Linear(J, residual(data, values), known, shape, least, data.repeats)
+    J = slopes(residual, data, values, names)
+    return fit_line(J, residual(data, values), known, shape, data.known_dof)
 
 
 # Least squares
@@ -167,41 +147,34 @@ def linear(residual: Residual, data: Data, values: Mapping[str, float], names: S
 def by_forces(data: Data, given: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
     """Return the values with the least squares of forces, by which others start, and the given ones."""
     values = {**dict.fromkeys(FITTED, 0.0), **given}
-    problem = linear(of_forces, data, values, names)
-    changes = np.linalg.lstsq(problem.J, problem.y, rcond=None)[0]
+    rest = of_forces(data, values)
+    changes = np.linalg.lstsq(slopes(of_forces, data, values, names), rest, rcond=None)[0]
     return values | {x: values[x] + float(change) for x, change in zip(names, changes, strict=True)}
 
 
 def estimate(
     data: Data, given: Mapping[str, float], names: Sequence[str], near: Mapping[str, float] | None = None
-) -> Estimate:
+) -> tuple[dict[str, float], Line]:
     """Weighted least squares for ``names``, starting at ``near``. Raises CannotSeparate.
 
-    Variances follow the values (effective variance), and least squares the variances.
+    Return the values, given ones too, and the linear fit at these. Variances follow the values (effective
+    variance), and least squares the variances.
     """
     values = {**(near or by_forces(data, given, names)), **given}
     size = inf
-    for _ in range(MOST_PASSES):
-        problem = linear(of_measured, data, values, names)
-        line = fit_line(problem)
-        share = problem.J @ line.coefficients / data.measured
+    for step in range(MOST_STEPS):
+        line = line_of(of_measured, data, values, names)
+        share = line.J @ line.coefficients / data.measured
         before, size = size, sqrt(sum_of_squares(share) / len(share))
         if size < NEAR:
             values |= {x: values[x] + float(b) for x, b in zip(names, line.coefficients, strict=True)}
+        elif step < MOST_SEARCHES:
+            values |= _least_squares(data, values, names, line.sigma)
         else:
-            values |= _least_squares(data, values, names, np.sqrt(line.variance))
-        if size < CLOSE or before < size < ENOUGH:
             break
-    else:
-        raise CannotSeparate
-    sigma, dof = np.sqrt(line.scale * line.variance), len(data.l) - len(names)
-    is_f_test = bool(data.repeats[1]) and not data.stated
-    chi2, p_value, between_runs = line.chi2 if data.scatter.any() else None, None, None
-    if chi2 is not None and dof:
-        known_by = data.repeats[1] if is_f_test else NORMAL_DOF  # χ² if the variance is known
-        p_value = float(fdtrc(dof, known_by, chi2 / dof))
-        between_runs = sqrt(line.between) / abs(values["gravity"])
-    return Estimate(data, values, names, line, sigma, dof, chi2, p_value, is_f_test, between_runs)
+        if size < CLOSE or before < size < ENOUGH:
+            return values, line
+    raise CannotSeparate
 
 
 def _least_squares(
@@ -215,6 +188,13 @@ def _least_squares(
         return of_measured(data, {**values, **dict(zip(names, x, strict=True))}) / sigma
 
     start = np.maximum([values[name] for name in names], np.divide(least, 2))
-    exactly: Any = {"ftol": 1e-15, "xtol": 1e-12, "gtol": None, "jac": "cs", "x_scale": "jac"}
+    exactly: Any = {
+        "ftol": 1e-15,
+        "xtol": 1e-12,
+        "gtol": None,
+        "jac": "cs",
+        "x_scale": "jac",
+        "max_nfev": 100,
+    }
     found = least_squares(rest, start, bounds=(least, inf), **exactly)
     return dict(zip(names, found.x.tolist(), strict=True))

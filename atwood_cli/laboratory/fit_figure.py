@@ -18,26 +18,26 @@ MEANING = {"rim_mass": "slope c", "axle": "intercept f_axle", "gravity": "g", "d
 
 def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     """Draw runs and their line to a file, below sentences unless it is bare. Raises OSError."""
-    best, used, data = fit.whole, fit.used[fit.shown], as_data(fit.runs, fit.shown)
-    g, c, f, delay = (best.values[name] for name in ("gravity", "rim_mass", "axle", "delay"))
+    used, data = fit.used[fit.shown], as_data(fit.runs, fit.shown)
+    g, c, f, delay = (fit.values[name] for name in ("gravity", "rim_mass", "axle", "delay"))
     a = accelerations(data, np.where(data.measured > delay, data.measured, np.nan), delay)
     difference: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(g))
     x, y = a[used], difference[used]
-    u_x = best.sigma if data.drop is None else 2 * best.sigma * x / (best.data.measured - delay)
-    residual = (best.data.measured - expected(best.data, best.values)) / best.sigma
+    u_x = fit.line.sigma if data.drop is None else 2 * fit.line.sigma * x / (fit.data.measured - delay)
+    residual = (fit.data.measured - expected(fit.data, fit.values)) / fit.line.sigma
     captions = {
         "Error bars are standard uncertainties.": True,
-        "They include a scatter of forces between runs.": best.line.between > 0,
+        "They include a scatter of forces between runs.": fit.line.between > 0,
         "Points are numbered as rows.": True,
         "Outliers are ringed.": bool(fit.outliers),
         "Hollow points are left out.": not used.all(),
-        "The fitted delay is subtracted from the times.": "delay" in best.names,
+        "The fitted delay is subtracted from the times.": "delay" in fit.names,
     }
     below = " ".join(words for words, holds in captions.items() if holds)
     results = [
-        f"{words} = {published(*fit.whole.results[name][:2])[0]} {QUANTITIES[name].unit}"
+        f"{words} = {published(*fit.results[name][:2])[0]} {QUANTITIES[name].unit}"
         for name, words in MEANING.items()
-        if name in fit.whole.results
+        if name in fit.results
     ]
     with page(path, force, [conditions(fit), verdict(fit)], below, bare, panels=2) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
@@ -46,7 +46,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         end = 1.06 * np.nanmax(x + u_x)
         line.plot([0, end], [f, f + c * end], color=BLUE)
         bars: Any = {"fmt": "o", "ms": 4, "capsize": 2, "lw": 1, "color": INK}
-        line.errorbar(x, y, (best.data.l + best.data.h) * u_x, u_x, **bars)
+        line.errorbar(x, y, (fit.data.l + fit.data.h) * u_x, u_x, **bars)
         rest.axhline(0, color=BLUE)
         for level in (-2, 2):
             rest.axhline(level, color=FAINT, lw=0.8, ls="--")

@@ -1,51 +1,56 @@
-"""From runs to a result: values, uncertainties and outliers, or why there is none."""
+"""From runs to a result: values, uncertainties, outliers and causes, or why there is none."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
+from functools import partial
 from math import hypot, inf
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import fdtrc, stdtrit
+from scipy.special import fdtrc
 
-from ..numbers.digits import format_number
-from ..numbers.text import counted
+from ..numbers.digits import format_number, half_range
+from ..numbers.text import Message, Option, counted, joined
 from ..reading.names import read_names
 from ..solver import physics
 from ..solver.decisions import Decisions
-from ..solver.scene import Input, InTerms, Scene, SceneError, parameter_of
+from ..solver.scene import Input, Motion, Scene, SceneError, parameter_of
 from .estimate import (
     TINY,
     Data,
-    Estimate,
     accelerations,
     as_data,
     by_forces,
     estimate,
     expected,
-    linear,
+    line_of,
     of_forces,
     of_measured,
+    slopes,
 )
 from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, published, rounded
-from .runs import OUT_OF_RANGE, Runs, Selection, behind_an_error, in_range, in_words
-from .statistics import CannotSeparate, judge_of_line, judge_of_repeats, outliers
+from .runs import OUT_OF_RANGE, Column, Places, Runs, Selection, behind_an_error, in_range, in_words
+from .statistics import CannotSeparate, Judge, Line, distances_from, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
+FEW_REPEATS = 3
+"""With fewer degrees of freedom repeats do not judge each other."""
 SELDOM = 0.05
 """The p value below which runs are said to scatter more than their repeats."""
 RARE = 0.01
-"""The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
+"""The p value below which a cause is reported, and above 1 less which runs scatter less than repeats."""
+NEAR_BEST = 4.0
+"""Causes are as good as the best if their χ² is not this many times the variance above it."""
+EARTH = 9.76, 9.84
+"""The least and the most gravity (m/s²) on land."""
 WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
 LEAST_SINGULAR = 4e-4
 """Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
-MOST_RATIO = 100
-"""A value that many times above or below the median of its kind must be a mistake."""
 SHARES = 1e-4, 2.0
-"""An acceleration outside these shares of that without a pulley and friction must be a mistake, too."""
+"""An acceleration outside these shares of that without a pulley and friction must be a mistake."""
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
 CHECK = "check masses, heights, measurements, their units and signs"
@@ -61,19 +66,24 @@ class Conditions(NamedTuple):
 
 
 class Fitted(NamedTuple):
-    """The fit of the runs that are ``used``, and their outliers: the run of each, and words that name it.
+    """The fit of the runs that are ``used``: ``values`` of all quantities, of which ``names`` are fitted.
 
-    Something can be expected of all runs that are ``shown``; the others of these are left out. ``delay`` has
-    what there is to say of a delay that is not fitted.
+    ``line`` is the linear fit of the measurements at these values. Something can be expected of all runs that
+    are ``shown``; the others of these are left out. ``outliers`` are runs, with a message on each, and
+    ``causes`` messages on what may be wrong in all runs.
     """
 
     runs: Runs
     used: Selection
     shown: Selection
     given: Conditions
-    whole: Estimate
-    outliers: Sequence[tuple[int, str]]
-    delay: Sequence[str]
+    names: Sequence[str]
+    data: Data
+    values: Mapping[str, float]
+    line: Line
+    results: Mapping[str, Result] = {}
+    outliers: Sequence[tuple[int, Message]] = ()
+    causes: Sequence[Message] = ()
 
 
 # What is given, and what is to be fitted
@@ -81,11 +91,17 @@ class Fitted(NamedTuple):
 
 def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
     """Return the conditions that inputs give. Raises SceneError."""
-    for x, one in inputs.items():
-        if one.given is not None and not in_range(one):
-            raise SceneError(x, one.given, OUT_OF_RANGE)
+    for x, typed in inputs.items():
+        if typed.given is not None and not in_range(typed):
+            raise SceneError(x, typed.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     scene = Scene.of({**inputs, **masses})
+    if "drop" in inputs:
+        scene = scene._replace(motion=Motion(drop=inputs["drop"].value))
+    return _conditions_at(inputs, scene)
+
+
+def _conditions_at(inputs: Mapping[str, Input], scene: Scene) -> Conditions:
     decided, values = Decisions(scene), {"gravity": float(scene.g)}
     if scene.axle is not None:
         values["axle"] = float(decided.axle_friction)
@@ -96,14 +112,23 @@ def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
 
 def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
     """Yield the conditions with each uncertain one less and more by its uncertainty. Raises SceneError."""
-    for x, one in given.inputs.items():
-        u, size = one.uncertainty, getattr(one.value, "number", one.value)
-        if u and not parameter_of(x).may_be_zero and u >= size:
-            raise SceneError(x, one.given, "has an uncertainty that reaches 0")
-        if u:
-            is_in_terms = isinstance(one.value, InTerms)
-            ends = (one.value._replace(number=end) if is_in_terms else end for end in (size - u, size + u))
-            yield [conditions_of({**given.inputs, x: Input(end, Fraction(0), one.given)}) for end in ends]
+    for x, typed in given.inputs.items():
+        if u := typed.uncertainty:
+            size = given.scene.number_of(x)
+            if not parameter_of(x).may_be_zero and u >= size:
+                raise SceneError(x, typed.given, "has an uncertainty that reaches 0")
+            scenes = (given.scene.with_number(x, end) for end in (size - u, size + u))
+            yield [_conditions_at(given.inputs, scene) for scene in scenes]
+
+
+def _as_one_height(runs: Runs, given: Conditions) -> tuple[Runs, Conditions]:
+    """Count the same uncertain height in all rows as that of an option: it is wrong in all runs alike."""
+    heights = {*zip(runs.given.get("drop", ()), runs.u.get("drop", ()), strict=True)}
+    if len(heights) != 1 or not any(u for _, u in heights):
+        return runs, given
+    value, u = (Fraction(str(float(x))) for x in heights.pop())
+    shared = conditions_of({**given.inputs, "drop": Input(value, u, None)})
+    return runs._replace(u={**runs.u, "drop": 0 * runs.u["drop"]}), shared
 
 
 def read_find(words: Sequence[str], given: Conditions) -> list[str]:
@@ -130,9 +155,10 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
 
 @np.errstate(all="ignore")  # what a step tries may be 0, or beyond doubles
 def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
-    """Return the fit of these quantities, and outliers. Raises SceneError, CannotSeparate."""
+    """Return the fit of these quantities, with outliers and causes. Raises SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
         raise SceneError("find", "delay", "needs times; the table has accelerations")
+    runs, given = _as_one_height(runs, given)
     difference = runs.given["m2"] - runs.given["m1"]
     held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
     unusable = {
@@ -147,127 +173,243 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
             remarks.append(f"{runs.rows_in_words(*np.flatnonzero(shown & holds))}: not used, as {reason}.")
         shown = shown & ~holds
     runs, used = runs._replace(remarks=remarks), shown & ~runs.left_out
+    mistakes: Sequence[tuple[int, Message]] = ()
     try:
-        whole = _fit(runs, used, given, names)
+        if not used.any():
+            raise CannotSeparate("no run can be used")
+        data = as_data(runs, used)
+        what = [QUANTITIES[x].words for x in names]
+        needed = len(names) + int(not (data.scatter.any() or data.uncertain))
+        if len(data.l) < needed:
+            why = f"{counted(len(data.l), 'run')} cannot determine {' and '.join(what)}"
+            raise CannotSeparate(f"{why}: give {needed} or more")
+        mistakes = _mistakes(runs, used, data, given.values["gravity"], names)
+        if not _separates(data, given.values, names):
+            verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
+            raise CannotSeparate(f"the runs do not {verb} {' from '.join(what)}: {vary}")
+        fit = _with_results(runs, used, data, given, names)
     except CannotSeparate as error:
-        raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
-    odd = [*_outliers(runs, used, whole.data, whole.values, names)]
-    odd = odd or _mistake(runs, used, whole.data, given.values["gravity"], names)
-    return Fitted(runs, used, shown, given, whole, odd, _delay(runs, used, given, whole, bool(odd)))
+        parts = mistakes[0][1] if mistakes else error.args
+        raise CannotSeparate(*parts, behind_an_error(remarks)) from None
+    fit = fit._replace(shown=shown, outliers=[*_outliers(fit)] or mistakes)
+    return fit._replace(causes=[*_causes(fit), *_impossible(fit)])
 
 
-def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Estimate:
-    """Return the fit of the runs that are used, with its results. Raises CannotSeparate."""
-    if not used.any():
-        raise CannotSeparate("no run can be used")
-    data, count = as_data(runs, used), int(used.sum())
-    what = [QUANTITIES[x].words for x in names]
-    needed = len(names) + (not data.scatter.any() and not data.uncertain)
-    if count < needed:
-        why = f"{counted(count, 'run')} cannot determine {' and '.join(what)}"
-        raise CannotSeparate(f"{why}: give {needed} or more")
-    mistake = "".join(words for _, words in _mistake(runs, used, data, given.values["gravity"], names))
-    if not _separates(data, given.values, names):
-        verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
-        raise CannotSeparate(mistake or f"the runs do not {verb} {' from '.join(what)}: {vary}")
+def _with_results(runs: Runs, used: Selection, data: Data, given: Conditions, names: Sequence[str]) -> Fitted:
+    """Return the fit of the runs that are used. Raises CannotSeparate."""
+    results = dict[str, Result]()
 
-    def odd(values: Mapping[str, float]) -> str:
-        return "; ".join(words for _, words in _outliers(runs, used, data, values, names)) or CHECK
-
-    def found(there: Conditions) -> dict[str, float]:
-        drop = there.inputs.get("drop")
-        moved = data._replace(drop=np.full(count, float(drop.value))) if drop else data
-        return _with_derived(estimate(moved, there.values, names, best.values).values, names, there)
+    def under(near: Conditions) -> dict[str, float]:
+        height = near.scene.motion.drop
+        moved = data if height is None else data._replace(drop=np.full(len(data.l), float(height)))
+        return _with_derived(estimate(moved, near.values, names, values)[0], names, near)
 
     try:
-        best = estimate(data, given.values, names)
-        ends = [[*map(found, pair)] for pair in _neighbours(given)]
+        values, line = estimate(data, given.values, names)
+        ends = [[*map(under, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        raise CannotSeparate(mistake or f"{NO_FIT}: {odd(by_forces(data, given.values, names))}") from None
-    by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
-    spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
-    times = float(stdtrit(best.line.dof, 0.975))  # Student's t
-    results = dict[str, Result]()
-    for x, value in _with_derived(best.values, names, given).items():
-        u = hypot(spread[x], *(float(np.ptp([value, *(end[x] for end in pair)])) / 2 for pair in ends))
-        results[x] = Result(value, u, (value - times * u, value + times * u))
-        if x in names and x != "delay" and results[x].interval[1] < 0:
-            raise CannotSeparate(mistake or f"{equation(x, value, u)} is negative: {odd(best.values)}")
-    return best._replace(results=results)
-
-
-def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate, odd: bool) -> list[str]:
-    """Return a sentence if all times seem too long, or if sound runs cannot show that, none being ``odd``.
-
-    An F test judges what a delay takes off χ². The repeats count in it, unless runs scatter more than they do
-    with the delay, too.
-    """
-    if runs.kind != "time" or "delay" in whole.names:
-        return []
-    names, half, estimated = [*whole.names, "delay"], inf, ""
-    if whole.dof > 1:
+        message: Message = (CHECK,)
         with suppress(CannotSeparate):
-            late = _fit(runs, used, given, names)
-            value, u, (_, high) = late.results["delay"]
-            rest, dof, taken_off = late.line.chi2, late.dof, max(whole.line.chi2 - late.line.chi2, 0)
-            if late.p_value is not None and late.p_value >= SELDOM:
-                rest, dof = rest + late.data.repeats[0], dof + late.data.repeats[1]
-            if fdtrc(1, dof, taken_off / max(rest, TINY) * dof) < RARE:
-                size, long = published(abs(value), u)[0], "long" if value > 0 else "short"
-                also = " and may explain outliers" if odd else ", too"
-                return [f"All times seem {size} s too {long}: --find {','.join(names)} fits that{also}."]
-            half, estimated = high - value, f" (--find {','.join(names)} gives {published(value, u)[0]} s)"
-    if half <= WIDE_DELAY or odd:
-        return []
-    said = f"It is open whether all times are too long by a delay{estimated}; the results assume none."
-    return [f"{said} More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it."]
+            values = by_forces(data, given.values, names)
+            line = line_of(of_forces, data, values, names)
+            message = _suspects(Fitted(runs, used, used, given, names, data, values, line)) or message
+        raise CannotSeparate(f"{NO_FIT}: ", *message) from None
+    fit = Fitted(runs, used, used, given, names, data, values, line, results)
+    by_runs = np.sqrt(line.covariance.diagonal()).tolist()
+    spread = _with_derived(dict(zip(names, by_runs, strict=True)), names, given)
+    for x, value in _with_derived(values, names, given).items():
+        u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in ends))
+        results[x] = Result(value, u, (value - line.times * u, value + line.times * u))
+        if x in names and _is_negative(x, value, u, line):
+            message = _suspects(fit) or joined(_causes(fit._replace(outliers=[(0, ())])), "; ") or (CHECK,)
+            raise CannotSeparate(f"{equation(x, value, u)} is negative: ", *message)
+    return fit
+
+
+def _is_negative(name: str, value: float, u: float, line: Line) -> bool:
+    """Decide if a value is below 0 by more than chance explains."""
+    return name != "delay" and value + max(2.0, line.times) * u < 0
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
     """Return the fitted values, with what follows from the rim mass by R and by the shape, if given."""
-    found = {x: values[x] for x in FITTED if x in names}
-    if "rim_mass" in found:
+    results, scene = {x: values[x] for x in FITTED if x in names}, given.scene
+    if "rim_mass" in results:
         if given.inputs["inertia"].value is not None:
-            found["pulley_mass"] = found["rim_mass"] / float(given.inputs["inertia"].value)
-        if given.inputs["R"].value is not None:
-            R = float(given.inputs["R"].value)
-            found["moment_of_inertia"] = physics.moment_of_inertia(found["rim_mass"], R)
-    return found
+            results["pulley_mass"] = results["rim_mass"] / float(scene.inertia or 0)
+        if scene.R is not None:
+            results["moment_of_inertia"] = physics.moment_of_inertia(results["rim_mass"], float(scene.R))
+    return results
 
 
-def _outliers(
-    runs: Runs, used: Selection, data: Data, values: Mapping[str, float], names: Sequence[str]
-) -> Iterator[tuple[int, str]]:
-    """Yield outliers among the repeats of each run, and among the runs without these repeats, in words.
+# What may be wrong in all runs
 
-    Runs are judged by the line of forces, which outliers bend least.
+
+def _causes(fit: Fitted) -> list[Message]:
+    """Return a message if one more free quantity repairs a fit, or if sound runs cannot show a delay.
+
+    Each is freed in turn. An F test judges what the best takes off χ²; the known variance counts in it unless
+    runs scatter more than that with the best, too. Named are all that are as good as the best.
     """
-    here, counts = np.flatnonzero(used), np.bincount(runs.run)
-    places = np.flatnonzero((used & (counts > 1))[runs.run])
+    freed, delay = list[tuple[Line, Message]](), Message()
+    half = 0.0 if fit.runs.kind != "time" or "delay" in fit.names else inf
+    for name in (x for x in FITTED if x not in fit.names and (x != "delay" or half)):
+        names = [*fit.names, name]
+        known = {x: value for x, value in fit.given.values.items() if x != name}
+        with suppress(CannotSeparate, ZeroDivisionError):
+            if fit.line.dof < 2 or not _separates(fit.data, fit.given.values, names):
+                continue
+            values, line = estimate(fit.data, known, names, fit.values)
+            value, u = values[name], float(np.sqrt(line.covariance[-1, -1]))
+            known_as = fit.values[name]
+            if (name == "delay" or value + 2 * u > 0) and abs(value - known_as) > u:
+                freed.append((line, _cause(name, value, u, fit.given, names)))
+            if name == "delay":
+                half = line.times * u
+                delay = (" (", Option("find", ",".join(names)), f" gives {published(value, u)[0]} s)")
+    if freed:
+        freed.sort(key=lambda pair: pair[0].chi2)
+        best, extra = freed[0][0], 0.0
+        if (best.p_value or 0) >= SELDOM:
+            extra = fit.data.known_dof
+        scale = max((best.chi2 + extra) / (best.dof + extra), TINY)
+        if fdtrc(1, best.dof + extra, max(fit.line.chi2 - best.chi2, 0) / scale) * len(freed) < RARE:
+            near = [message for line, message in freed if line.chi2 - best.chi2 < NEAR_BEST * scale]
+            which = "; they cannot tell which" if near[1:] else ""
+            also = ", which may explain outliers, too" if fit.outliers else ""
+            return [("the runs fit better if ", *joined(near, ", or "), f"{which}{also}")]
+    if half <= WIDE_DELAY or fit.outliers:
+        return []
+    wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
+    is_open = "it is open whether all times are too long by a delay"
+    return [(is_open, *delay, f"; the results assume none. {wider}")]
+
+
+def _cause(name: str, value: float, u: float, given: Conditions, names: Sequence[str]) -> Message:
+    """Say what a freed quantity would be, and how to fit it."""
+    if name == "delay":
+        words = f"all times are {published(abs(value), u)[0]} s too {'long' if value > 0 else 'short'}"
+    else:
+        what = f"{name} (or the height of fall)" if name == "gravity" and "drop" in given.inputs else name
+        unit, instead = QUANTITIES[name].unit, rounded(given.values.get(name, 0.0), 3)
+        words = f"{what} is {published(value, u)[0]} {unit}, not {instead}"
+    typed = [x for x in QUANTITIES[name].given_by if given.inputs[x].given is not None]
+    without: Message = ("without ", Option(typed[0], ""), ": ") if typed else ()
+    return (f"{words} (", *without, Option("find", ",".join(names)), ")")
+
+
+def _impossible(fit: Fitted) -> Iterator[Message]:
+    """Yield messages on runs that would not move with the fitted axle, and on gravity that is not Earth's."""
+    moves = expected(fit.data._replace(drop=None), fit.values) > 0
+    for run in np.flatnonzero(fit.used)[~moves].tolist():
+        given = ", ".join(
+            f"{x} = {rounded(column[run], 3)} {parameter_of(x).unit}" for x, column in fit.runs.given.items()
+        )
+        stuck = "would not move, as the fitted axle holds it"
+        yield (f"{fit.runs.rows_in_words(run)} ({given}) {stuck}: {CHECK}",)
+    low, high = fit.results["gravity"].interval if "gravity" in fit.results else EARTH
+    if high < EARTH[0] or low > EARTH[1]:
+        yield (f"gravity is not that of Earth, {EARTH[0]} to {EARTH[1]} m/s²: {CHECK}",)
+
+
+# Outliers
+
+
+def _suspects(fit: Fitted) -> Message:
+    """Return the outliers if a fit without their runs is one that a pulley explains."""
+    suspects, others = [*_outliers(fit)], fit.used.copy()
+    others[[run for run, _ in suspects]] = False
+    with suppress(CannotSeparate):
+        if suspects and others.sum() > len(fit.names):
+            values, line = estimate(as_data(fit.runs, others), fit.given.values, fit.names)
+            u = np.sqrt(line.covariance.diagonal())
+            if not any(_is_negative(x, values[x], u[i], line) for i, x in enumerate(fit.names)):
+                return joined([message for _, message in suspects], "; ")
+    return ()
+
+
+def _outliers(fit: Fitted) -> Iterator[tuple[int, Message]]:
+    """Yield outliers among the repeats of each run, and among the runs without these repeats.
+
+    What is wrong with a run is named once. Few repeats are judged as runs of their own.
+    """
+    runs, row_of = fit.runs, [cell.split(":")[0] for cell in fit.runs.cells]
+    places = np.flatnonzero((fit.used & (np.bincount(runs.run) > 1))[runs.run])
+    free = len(places) - len({*runs.run[places]})
+    is_few = 0 < free < FEW_REPEATS and not fit.data.stated
+    if is_few:
+        single = fit._replace(runs=_as_single(runs), used=fit.used[runs.run])
+        far_cells, far_runs, others = _run_outliers(single), dict[int, float](), "a fit of the others"
+    else:
+        far_cells, others = _repeat_outliers(fit, places, free), "its repeats, by the scatter of the others"
+        kept = np.ones(len(runs.values), dtype=bool)
+        kept[[*far_cells]] = False
+        far_runs = _run_outliers(fit, kept)
+    named = set[str]()
+    for place, far in far_cells.items():
+        run, row, cell = int(runs.run[place]), row_of[place], runs.cells[place]
+        in_row = {i for i, other in enumerate(row_of) if other == row}
+        if run in far_runs or row in named:
+            continue
+        if in_row <= {*far_cells} and (is_few or in_row > {place}):
+            named.add(row)
+            yield run, _far(f"row {row} is", far, others, row)
+        else:
+            value = f"{format_number(float(runs.values[place]))} {parameter_of(runs.kind).unit}"
+            yield run, _far(f"{in_words(cell)} = {value} is", far, others, cell)
+    for run, far in far_runs.items():
+        what = f"{runs.rows_in_words(run)} {'are' if runs.rows[run][1:] else 'is'}"
+        yield run, _far(what, far, "a fit of the other runs", ",".join(map(str, runs.rows[run])))
+
+
+def _as_single(runs: Runs) -> Runs:
+    """Return each measurement as a run."""
+    given, u = ({x: column[runs.run] for x, column in columns.items()} for columns in (runs.given, runs.u))
+    single = np.arange(len(runs.values))
+    return runs._replace(given=given, u=u, left_out=runs.left_out[runs.run], mean=runs.values, run=single)
+
+
+def _repeat_outliers(fit: Fitted, places: Places, free: int) -> dict[int, float]:
+    """Return the outliers among repeats, at these ``places``, by their distances."""
     # Of two repeats, which are equally far from each other, that far from the line comes first.
+    runs, data, usable = fit.runs, fit.data, np.flatnonzero(fit.used)
     measured = (runs.sign[runs.run] * runs.values)[places]
-    away = measured - expected(data, values)[np.searchsorted(here, runs.run[places])]
+    away = measured - expected(data, fit.values)[np.searchsorted(usable, runs.run[places])]
     places = places[np.argsort(-np.abs(away), kind="stable")]
     u = runs.u_values[places] if data.stated else np.ones(len(places))
     judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
-    kept = np.ones(len(runs.values), dtype=bool)
-    for i, far in outliers(judge, len(places), len(places) - len({*runs.run[places]}), OUTLIER_LEVEL).items():
-        kept[places[i]], cell = False, runs.cells[places[i]]
-        value = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
-        others = "its repeats, by the scatter of the others"
-        yield int(runs.run[places[i]]), _far(f"{in_words(cell)} = {value} is", far, others, cell)
-    near = {**values, "rim_mass": max(values["rim_mass"], 0.0), "delay": 0.0}
-    judge = judge_of_line(linear(of_forces, as_data(runs, used, kept), near, names))
-    for i, far in outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL).items():
-        rows = runs.rows[here[i]]
-        what = f"{runs.rows_in_words(here[i])} {'are' if rows[1:] else 'is'}"
-        yield int(here[i]), _far(what, far, "a fit of the other runs", ",".join(map(str, rows)))
+    far = outliers(judge, len(places), free, OUTLIER_LEVEL)
+    return {int(places[i]): distance for i, distance in far.items()}
 
 
-def _far(what: str, distance: float, others: str, where: str) -> str:
+def _run_outliers(fit: Fitted, kept: Selection | None = None) -> dict[int, float]:
+    """Return the outliers among runs, by their distances.
+
+    They are judged by the line of forces, which outliers bend least. That is no line in a delay: if one is
+    fitted, runs are judged by the least squares of the times of the others.
+    """
+    usable, data, names = np.flatnonzero(fit.used), as_data(fit.runs, fit.used, kept), fit.names
+    values = {**fit.values, "rim_mass": max(fit.values["rim_mass"], 0.0)}
+    given = {x: value for x, value in values.items() if x not in names}
+
+    def by_times(some: Selection) -> tuple[Column, Any]:
+        others = np.isin(np.arange(len(fit.used)), usable[some])
+        best, _ = estimate(as_data(fit.runs, others, kept), given, names, values)
+        return distances_from(line_of(of_measured, data, best, names), some)
+
+    with suppress(CannotSeparate):
+        judge: Judge = by_times
+        if "delay" not in names:
+            judge = partial(distances_from, line_of(of_forces, data, values, names))
+        far = outliers(judge, len(usable), len(usable) - len(names), OUTLIER_LEVEL)
+        return {int(usable[i]): distance for i, distance in far.items()}
+    return {}
+
+
+def _far(what: str, distance: float, others: str, where: str) -> Message:
     """Say how many standard deviations something is from others, and how to leave it out."""
     far = f"{rounded(abs(distance))} standard deviations from {others}"
-    return f"{what} {far}; if it is a mistake, leave it out: --without {where}"
+    return f"{what} {far}; if it is a mistake, leave it out: ", Option("without", where)
 
 
 # Why there is no result
@@ -282,41 +424,31 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     least = float((data.h - data.l).min()) * given["gravity"]
     values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), "delay": 0.0, **given}
     values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
-    J: Any = linear(of_measured, design, values, names).J / expected(design, values)[:, None]
+    J: Any = slopes(of_measured, design, values, names) / expected(design, values)[:, None]
     singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
     return bool(singular.min(initial=1.0) > LEAST_SINGULAR)
 
 
-def _mistake(
+def _mistakes(
     runs: Runs, used: Selection, data: Data, g: float, names: Sequence[str]
-) -> list[tuple[int, str]]:
-    """Return the first run that must have a mistake, in words. Raises CannotSeparate if most runs have one.
+) -> list[tuple[int, Message]]:
+    """Return the first run that must have a mistake. Raises CannotSeparate if most runs have one.
 
-    Masses, heights and times are compared with the median of their kind. Accelerations, which may be small,
-    are compared with those of free masses, unless gravity or a delay is fitted.
+    Accelerations, which may be small, are compared with those of free masses, unless gravity or a delay is
+    fitted.
     """
-    each = {x: c[used] for x, c in runs.given.items()} | ({} if runs.kind == "a" else {"time": data.measured})
-    mass, ratios = np.median([data.l, data.h]), (1 / MOST_RATIO, MOST_RATIO)
-    checks: list[tuple[str, str, Any, Any, tuple[float, float]]] = [
-        (x, "the median", values, mass if x[0] == "m" else np.median(values), ratios)
-        for x, values in each.items()
-    ]
-    if not {"gravity", "delay"} & {*names}:
-        name = "a" if data.drop is None else "a = 2 drop/t²"
-        free = physics.acceleration(data.h - data.l, data.h + data.l, g)
-        what = "the acceleration without friction and pulley"
-        checks.append((name, what, accelerations(data, data.measured), free, SHARES))
-    said, is_mistaken = list[tuple[int, str]](), np.zeros(len(data.l), dtype=bool)
-    for name, what, values, typical, (least, most) in checks:
-        ratio = values / typical
-        is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
-        is_mistaken |= is_unusual
-        if is_unusual.any() and not said:
-            i, unit = int(np.argmax(is_unusual)), parameter_of(name.split()[0]).unit
-            value, times, there = (rounded(float(x), 3) for x in (values[i], ratio[i], values[i] / ratio[i]))
-            far = f"{name} = {value} {unit} is {times} times {what}, {there} {unit}"
-            run = int(np.flatnonzero(used)[i])
-            said = [(run, f"{runs.rows_in_words(run)}: {far}; {CHECK}")]
+    if {"gravity", "delay"} & {*names}:
+        return []
+    a: Any = accelerations(data, data.measured)
+    free: Any = physics.acceleration(data.h - data.l, data.h + data.l, g)
+    is_mistaken = (a / free < SHARES[0]) | (a / free > SHARES[1])
+    if not is_mistaken.any():
+        return []
+    i, what = int(np.argmax(is_mistaken)), "a" if data.drop is None else "a = 2 drop/t²"
+    value, times, usual = (rounded(float(x), 3) for x in (a[i], a[i] / free[i], free[i]))
+    run = int(np.flatnonzero(used)[i])
+    far = f"{value} m/s² is {times} times the acceleration without friction and pulley, {usual} m/s²"
+    words = f"{runs.rows_in_words(run)}: {what} = {far}; {CHECK}"
     if is_mistaken.mean() > 0.5:
-        raise CannotSeparate(said[0][1])
-    return said
+        raise CannotSeparate(words)
+    return [(run, (words,))]

@@ -1,20 +1,24 @@
 """A fit as sentences, tables, JSON and CSV: what the runs determine, their outliers, what to vary."""
 
 from collections.abc import Mapping, Sequence
+from math import log10, sqrt
 from typing import Any
 
 import numpy as np
 
 from ..numbers.digits import format_number
-from ..numbers.text import counted
+from ..numbers.text import counted, sentence
 from ..output.page import Page, aligned
 from ..output.text import Report, cell, inputs_in_words
-from ..solver.scene import Motion, parameter_of
-from .estimate import as_data, expected
+from ..solver.scene import parameter_of
+from .estimate import ROUNDING, as_data, expected
 from .fitting import RARE, SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, published, rounded
 from .runs import MEASURED
+from .statistics import NORMAL_DOF
 
+COMPUTED = 1e-9
+"""Below this share of what is measured nobody's runs scatter."""
 NOT_FITTED = "no value, as it is given, was not to be fitted, or the runs do not determine it"
 NEEDS = {
     "moment_of_inertia": "needs the rim mass to be fitted, and R",
@@ -27,40 +31,53 @@ NEEDS = {
 
 def verdict(fit: Fitted) -> str:
     """Return how many runs there are, and which quantities differ from 0 as shown."""
-    measurements = counted(int(fit.whole.data.counts.sum()), MEASURED[fit.runs.kind])
-    said = [f"{counted(len(fit.whole.data.l), 'run')}, {measurements}."]
-    if not fit.whole.names:
+    measurements = counted(int(fit.data.counts.sum()), MEASURED[fit.runs.kind])
+    said = [f"{counted(len(fit.data.l), 'run')}, {measurements}."]
+    if not fit.names:
         said.append("Nothing is left to fit: the pulley and its axle are given.")
     for name in USUAL:
-        if name in fit.whole.results:
-            _, u, (low, high) = fit.whole.results[name]
-            may_be = f"is not distinguishable from 0; it may be up to {cut(high, u)} {QUANTITIES[name].unit}."
-            verb = "is clearly above 0." if low > u / 20 else may_be  # as cut at the second digit of u
-            said.append(_capital(f"{QUANTITIES[name].words} {verb}"))
+        if name in fit.results:
+            value, u, (low, high) = fit.results[name]
+            verb = "is not distinguishable from 0"
+            if low > u / 20:  # as cut at the second digit of u
+                verb = "is clearly above 0"
+            elif value < -u:
+                verb = f"is below 0 by {rounded(-value / u)} standard uncertainties, which chance may explain"
+            most = f"; it may be up to {cut(high, u)} {QUANTITIES[name].unit}" if low <= u / 20 < high else ""
+            said.append(_capital(f"{QUANTITIES[name].words} {verb}{most}."))
     return " ".join(said)
 
 
 def _scatter(fit: Fitted) -> str:
     """Return how the scatter of the runs is known, and its p value."""
-    whole = fit.whole
-    if not whole.dof:
+    p_value = fit.line.p_value
+    if p_value is None:
         return "There are as many runs as results, so nothing is left to test the fit."
-    if whole.chi2 is None or whole.p_value is None:
+    if (digits := _digits_of_agreement(fit)) is not None:
+        return f"The runs agree with the fit to {digits} digits, as computed data do."
+    if not fit.data.scatter.any():
         return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."
-    probability = f"p = {rounded(whole.p_value)}" if whole.p_value >= 0.001 else "p < 0.001"
-    source = "uncertainties" if whole.data.stated else "repeats"
-    test = f" by an F({whole.dof}, {whole.data.repeats[1]}) test" if whole.is_f_test else ""
-    chi2 = f"χ² = {rounded(whole.chi2, 3)}, {counted(whole.dof, 'degree')} of freedom"
+    probability = f"p = {rounded(p_value)}" if p_value >= 0.001 else "p < 0.001"
+    source = "uncertainties" if fit.data.stated else "repeats"
+    known_dof = fit.data.known_dof
+    test = f" by an F({fit.line.dof}, {known_dof:.0f}) test" if known_dof < NORMAL_DOF else ""
+    chi2 = f"χ² = {rounded(fit.line.chi2, 3)}, {counted(fit.line.dof, 'degree')} of freedom"
     by = f"{source} ({chi2}, {probability}{test})"
-    if whole.p_value < SELDOM:
+    if p_value < SELDOM:
         return f"The runs scatter more than their {by}: masses, friction or timing vary between them."
     if fit.outliers:
         return f"Because of outliers, it is open whether the runs scatter more than their {by}."
-    if whole.p_value > 1 - RARE:
-        return f"The runs scatter less than their {by}."
-    if whole.line.between:
-        return f"The runs scatter more than their {by}, but chance may explain that."
-    return f"The runs do not scatter more than their {by}."
+    if p_value > 1 - RARE:
+        as_stated = "; these are taken as stated, and may be too large" if fit.data.stated else ""
+        return f"The runs scatter less than their {by}{as_stated}."
+    return f"The runs agree with the fit within chance, by their {by}."
+
+
+def _digits_of_agreement(fit: Fitted) -> int | None:
+    """Return to how many digits the fit is that of computed data; None if it is that of a laboratory."""
+    residual = np.abs(fit.data.measured - expected(fit.data, fit.values)) / fit.data.measured
+    share = max(float(residual.max()), ROUNDING)
+    return None if share > COMPUTED else int(-log10(share))
 
 
 def _capital(words: str) -> str:
@@ -70,12 +87,9 @@ def _capital(words: str) -> str:
 def conditions(fit: Fitted) -> str:
     """Return what is the same in all runs, in words."""
     inputs = fit.given.inputs
-    scene = fit.given.scene
-    if "drop" in inputs:
-        scene = scene._replace(motion=Motion(drop=inputs["drop"].value))
     uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
-    words = inputs_in_words(scene, uncertain)
-    g = "" if "gravity" in fit.whole.names else "g"
+    words = inputs_in_words(fit.given.scene, uncertain)
+    g = "" if "gravity" in fit.names else "g"
     inertia = "" if inputs["M"].given is None else "inertia"
     shown = (x for x, one in inputs.items() if one.given is not None or x in (g, inertia, "drop"))
     return ", ".join(words[x] for x in shown if x in words)
@@ -84,25 +98,30 @@ def conditions(fit: Fitted) -> str:
 # Records and pages
 
 
-def results_of(fit: Fitted) -> Fit:
+def results_of(fit: Fitted, in_python: bool = False) -> Fit:
     """Return all of a fit by name, with its sentences: first the verdict and the outliers."""
-    whole, outliers = fit.whole, [f"{_capital(words)}." for _, words in fit.outliers]
+    outliers, causes = (
+        [f"{_capital(sentence(message, in_python))}." for message in messages]
+        for messages in ([message for _, message in fit.outliers], fit.causes)
+    )
+    known = bool(fit.data.scatter.any())
     return Fit(
-        **{name: whole.results[name].value if name in whole.results else None for name in QUANTITIES},
-        uncertainty={name: one.uncertainty for name, one in whole.results.items()},
-        interval={name: list(one.interval) for name, one in whole.results.items()},
-        correlation=_correlation(whole.line.covariance),
-        chi2=whole.chi2,
-        dof=whole.dof,
-        between_runs=whole.between_runs,
+        **{name: fit.results[name].value if name in fit.results else None for name in QUANTITIES},
+        uncertainty={name: one.uncertainty for name, one in fit.results.items()},
+        interval={name: list(one.interval) for name, one in fit.results.items()},
+        correlation=_correlation(fit.line.covariance),
+        chi2=fit.line.chi2 if known else None,
+        dof=fit.line.dof,
+        interval_dof=fit.line.t_dof if fit.line.t_dof < NORMAL_DOF else None,
+        between_runs=sqrt(fit.line.between) / abs(fit.values["gravity"]) if known and fit.line.dof else None,
         runs=_records(fit),
-        notes=[verdict(fit), *outliers, *map(_capital, fit.runs.remarks), _scatter(fit), *fit.delay],
+        notes=[verdict(fit), *outliers, *map(_capital, fit.runs.remarks), _scatter(fit), *causes],
     )
 
 
 def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     """Return a fit in the forms in which it may be asked for; ``only`` names results."""
-    found, results = results_of(fit), fit.whole.results
+    found, results = results_of(fit), fit.results
     record = found.to_dict()
     asked = {name: record[name] for name in only or record}
     rows: Sequence[Mapping[str, Any]] = [asked]
@@ -112,7 +131,7 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     elif only:
         said = [equation(x, *results[x][:2]) for x in only if x in results]
         said += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
-        said += [*found.notes[1 : 1 + len(fit.outliers)], *fit.delay]
+        said += [*found.notes[1 : 1 + len(fit.outliers)], *found.notes[len(found.notes) - len(fit.causes) :]]
     else:
         names = "quantity", "value", "uncertainty", "low", "high", "unit"
         each = ((x, *one[:2], *one.interval, QUANTITIES[x].unit) for x, one in results.items())
@@ -130,13 +149,14 @@ def _correlation(covariance: Any) -> float | None:
 
 def _records(fit: Fitted) -> list[dict[str, Any]]:
     """Return the runs, as JSON and CSV have them; the residual is in standard uncertainties."""
-    runs, best, shown = fit.runs, fit.whole, as_data(fit.runs, fit.shown)
-    moves = expected(shown._replace(drop=None), best.values) > 0
+    runs, shown = fit.runs, as_data(fit.runs, fit.shown)
     measured, (u, ideal) = runs.mean.copy(), np.full((2, len(runs.rows)), np.nan)
-    if best.data.stated:
-        measured[fit.used] = runs.sign[fit.used] * best.data.measured  # weighted means
-    u[fit.used] = best.sigma
-    ideal[fit.shown] = runs.sign[fit.shown] * np.where(moves, expected(shown, best.values), np.nan)
+    if fit.data.stated:
+        measured[fit.used] = runs.sign[fit.used] * fit.data.measured  # weighted means
+    u[fit.used] = fit.line.sigma
+    moves = expected(shown._replace(drop=None), fit.values) > 0
+    ideal[fit.shown] = runs.sign[fit.shown] * np.where(moves, expected(shown, fit.values), np.nan)
+    u[np.isnan(ideal)] = np.nan
     residual = (measured - ideal) / u
     columns = {**runs.given, runs.kind: measured, "u": u, "expected": ideal, "residual": residual}
     return [
@@ -148,18 +168,21 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
 
 def _print_page(fit: Fitted, found: Fit) -> None:
     """Print the conditions, the runs, what there is to say, and the results."""
-    page, kind, results, first = Page(), fit.runs.kind, fit.whole.results, 1 + len(fit.outliers)
+    page, kind, results, first = Page(), fit.runs.kind, fit.results, 1 + len(fit.outliers)
     page.say(conditions(fit))
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
-    between = " It includes a scatter of forces between runs." if fit.whole.line.between else ""
-    page.say(f"u is the standard uncertainty of a run's mean.{between}", *found.notes[first:])
+    between = " It includes a scatter of forces between runs." if fit.line.between else ""
+    has_columns = fit.data.stated or fit.data.uncertain
+    independent = " Uncertainties in columns count as independent from row to row." if has_columns else ""
+    page.say(f"u is the standard uncertainty of a run's mean.{between}{independent}", *found.notes[first:])
     page.say(*found.notes[:first], style="bold")
     if results:
         numbers = ((x, published(*one), QUANTITIES[x]) for x, one in results.items())
         rows = [(x, both, words.unit, words.symbol, ends) for x, (both, ends), words in numbers]
-        _print_table(page, ("Quantity", "Value", "Unit", "Symbol", "95 % interval"), rows)
+        value = "Value (outliers included)" if fit.outliers else "Value"
+        _print_table(page, ("Quantity", value, "Unit", "Symbol", "95 % interval"), rows)
 
 
 def _print_table(page: Page, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -169,7 +192,7 @@ def _print_table(page: Page, heads: Sequence[str], rows: Sequence[Sequence[str]]
 def _rows(fit: Fitted, found: Fit) -> list[list[str]]:
     """Return the cells of each run: the measurement, what is expected, and the residual."""
     # The mean has the digits of its own scatter.
-    finest = float(min(fit.whole.data.scatter.min() or np.inf, fit.whole.sigma.min()))
+    finest = float(min(fit.data.scatter.min() or np.inf, fit.line.sigma.min()))
     rows = []
     for run in found.runs:
         where, kind, u, residual = run["rows"].replace(" ", ","), fit.runs.kind, run["u"], run["residual"]

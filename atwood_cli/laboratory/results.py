@@ -1,18 +1,10 @@
 """The quantities that a fit gives, and their numbers as published: cut where their uncertainty begins."""
 
 from collections.abc import Mapping, Sequence
-from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..numbers.digits import (
-    Rounding,
-    format_number,
-    rounding_to_place,
-    share_exponent,
-    strip_zeros,
-    to_digits,
-)
+from ..numbers.digits import format_number, rounding_to_uncertainty, strip_zeros, to_digits, with_uncertainty
 from ..numbers.text import counted
 from ..output.text import VERSION, in_html
 
@@ -44,6 +36,7 @@ RESULTS = {
     "correlation": "the correlation of two results",
     "chi2": "χ² of the runs by the uncertainties stated, or by the scatter of repeats",
     "dof": "degrees of freedom: the runs less what is fitted",
+    "interval_dof": "degrees of freedom of Student's t of intervals; none is the normal distribution",
     "between_runs": "the standard deviation between runs beyond that, as a mass",
     "runs": "each run, with what is expected of it",
 }
@@ -58,14 +51,10 @@ class Result(NamedTuple):
 
 
 def published(value: float, uncertainty: float, interval: Sequence[float] = ()) -> tuple[str, str]:
-    """Return a value ± its uncertainty, and its interval, all cut at the second digit of the uncertainty.
-
-    They share a power of ten: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
-    """
-    numbers = [_cutting(uncertainty)(Fraction(x)) for x in (value, uncertainty, *interval)]
-    power = max(number.adjusted() for number in numbers[:2] if number)
-    both = share_exponent("{:f} ± {:f}", numbers[:2], power)
-    return both, share_exponent("{:f} to {:f}", numbers[2:], power) if interval else ""
+    """Return a value ± its uncertainty, and its interval, all cut at the second digit of the uncertainty."""
+    round_ = rounding_to_uncertainty(Fraction(uncertainty))
+    value_, u, *ends = (round_(Fraction(x)) for x in (value, uncertainty, *interval))
+    return with_uncertainty(value_, u, ends)
 
 
 def equation(name: str, value: float, uncertainty: float) -> str:
@@ -75,11 +64,10 @@ def equation(name: str, value: float, uncertainty: float) -> str:
 
 def cut(value: float | None, uncertainty: float | None) -> str:
     """Return a value cut at the second digit of an uncertainty, "" without either."""
-    return f"{_cutting(uncertainty)(Fraction(value)):f}" if value is not None and uncertainty else ""
-
-
-def _cutting(uncertainty: float) -> Rounding[Decimal]:
-    return rounding_to_place(to_digits(2)(Fraction(uncertainty)).adjusted() - 1)
+    if value is None or not uncertainty:
+        return ""
+    number = rounding_to_uncertainty(Fraction(uncertainty))(Fraction(value))
+    return f"{number:f}" if not number or number.adjusted() > -6 else f"{number:e}"
 
 
 def rounded(value: float, digits: int = 2) -> str:
@@ -95,8 +83,9 @@ class Fit(NamedTuple):
     ``pulley_mass`` (kg) needs the pulley's shape, and ``moment_of_inertia`` (kg m²) its radius.
     ``uncertainty`` and ``interval`` have the standard uncertainty of a result and both ends of its interval
     of 95 %. ``correlation`` is that of the two results that have most of it. ``chi2`` is χ² by the
-    uncertainties stated, or by the scatter of repeats, with ``dof`` degrees of freedom; ``between_runs`` (kg)
-    is the standard deviation between runs beyond that. ``runs`` has a record for each run.
+    uncertainties stated, or by the scatter of repeats, with ``dof`` degrees of freedom; ``interval_dof`` are
+    those of Student's t of intervals (None: the normal distribution). ``between_runs`` (kg) is the standard
+    deviation between runs beyond those uncertainties. ``runs`` has a record for each run.
     """
 
     rim_mass: float | None
@@ -110,6 +99,7 @@ class Fit(NamedTuple):
     correlation: float | None
     chi2: float | None
     dof: int
+    interval_dof: float | None
     between_runs: float | None
     runs: Sequence[Mapping[str, Any]]
     notes: Sequence[str]

@@ -149,7 +149,8 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, count: int, words: Sequence[str]) 
     values, u_values = np.array([number for some in used for number in some.values()], float).T
     lacking = [cell for some in kept for cell, (_, u) in some.items() if not u]
     if 0 < len(lacking) < sum(map(len, kept)):
-        raise Unreadable(f"{in_words(lacking[0])} has no uncertainty, as others have; give all")
+        none = f"{in_words(lacking[0])} has no uncertainty, or one of 0"
+        raise Unreadable(f"{none}; give one above 0, as others have")
     given = {x: np.array([dict(run)[x] for run in runs], float).T for x, _ in next(iter(runs))}
     return Runs(
         kind,
@@ -185,7 +186,7 @@ def _others(sheet: Sheet, places: Collection[int], labels: Collection[str]) -> l
             continue
         if column in INPUTS:
             option = column.replace("_", "-")
-            raise refused(column, f"holds for all runs, so it is an option: give --{option}")
+            raise refused(column, "holds for all runs, so it is an option", f": give --{option}")
         if not column.strip():
             raise refused(column, "has numbers and no heading; give it one")
         if LIKE_UNCERTAINTY.search(column):

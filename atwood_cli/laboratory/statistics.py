@@ -1,20 +1,19 @@
 """The statistics of a fit, as in textbooks: weighted least squares, a variance between runs, outliers.
 
 R. C. Paule and J. Mandel, "Consensus values and weighting factors", J. Res. NBS 87 (1982) 377, estimate the
-variance between runs; G. Knapp and J. Hartung, "Improved tests for a random effects meta-regression with a
-single covariate", Stat. Med. 22 (2003) 2693, scale the covariance and use Student's t with n - p degrees of
-freedom; B. Rosner, "Percentage points for a generalized ESD many-outlier procedure", Technometrics 25 (1983)
-165, counts outliers that hide each other.
+variance between runs; B. Rosner, "Percentage points for a generalized ESD many-outlier procedure",
+Technometrics 25 (1983) 165, counts outliers that hide each other.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import stdtr
+from scipy.special import fdtrc, stdtr, stdtrit
 
+from ..numbers.text import sentence
 from .runs import Column, Places, Selection
 
 NORMAL_DOF = 1e8
@@ -23,62 +22,69 @@ SINGULAR_RATIO = 1e-7
 """Below this ratio of singular values a linear fit has no unique solution."""
 MOST_OUTLIERS = 20
 """Outliers that are looked for; there is at most one for three degrees of freedom."""
+LEAST_SHARE = 1e-4
+"""The variance of a residual is at least this share of the variance of its value."""
 
 
 class CannotSeparate(ArithmeticError):
-    """The runs do not determine the quantities to be fitted."""
+    """The runs do not determine the quantities to be fitted. Its arguments are the parts of a message."""
+
+    def __str__(self) -> str:
+        return sentence(self.args)
 
 
-class Linear(NamedTuple):
-    """A linear fit of n values: the coefficients b (p) for which J b is nearest to y, with J (n, p).
+class Line(NamedTuple):
+    """Weighted least squares of n values y: the ``coefficients`` b (p) for which J b is nearest to y.
 
-    The variance of y is ``known`` + v ``shape`` with an unknown v, and at least ``least``. ``repeats`` are
-    χ² and the degrees of freedom of repeats about their means, by which a variance is known.
+    The variance of y is the ``known`` one, with its degrees of freedom ``known_dof``, and v ``shape`` with
+    an unknown v, ``between`` runs. ``sigma`` (n) is by their sum, ``covariance`` (p, p) that of b, and
+    ``t_dof`` has the degrees of freedom of Student's t of their intervals. ``chi2`` is by the known variance.
     """
 
     J: Any
     y: Column
     known: Column
     shape: Column
-    least: float
-    repeats: tuple[float, int] = (0.0, 0)
-
-
-class Line(NamedTuple):
-    """The result of a linear fit: p coefficients, their covariance, and the variance of each value.
-
-    Covariance and variances are still to be multiplied by ``scale``, which is known with ``dof`` degrees of
-    freedom. ``between`` is the factor v of the shape, and ``chi2`` is by the known variance alone.
-    """
-
+    known_dof: float
     coefficients: Column
     covariance: Any
-    variance: Column
-    scale: float
-    dof: float
+    sigma: Column
+    t_dof: float
     chi2: float
     between: float
 
+    @property
+    def dof(self) -> int:
+        """Return the degrees of freedom of the values, n - p."""
+        return int(len(self.y) - self.J.shape[1])
 
-def fit_line(linear: Linear) -> Line:
+    @property
+    def p_value(self) -> float | None:
+        """Return the probability that chance gives a larger χ² (an F test if the variance is an estimate)."""
+        return float(fdtrc(self.dof, self.known_dof, self.chi2 / self.dof)) if self.dof else None
+
+    @property
+    def times(self) -> float:
+        """Return how many standard uncertainties half an interval of 95 % has."""
+        return float(stdtrit(self.t_dof, 0.975))
+
+
+def fit_line(J: Any, y: Column, known: Column, shape: Column, known_dof: float = NORMAL_DOF) -> Line:
     """Return the weighted least squares. Raises CannotSeparate.
 
-    Paule and Mandel's v makes χ² equal to n - p; it is 0 if χ² is no more than that without it. Knapp and
-    Hartung's scale is χ²/(n - p). If v is 0, χ² and degrees of freedom of the repeats are pooled with those
-    of the line.
+    A known variance is taken as it is. If χ² is more than n - p, Paule and Mandel's v makes it equal to that,
+    and t has n - p degrees of freedom; else v is 0, and t has those of the known variance.
     """
-    J, y, known, shape, least, (pooled_chi2, pooled_dof) = linear
-    dof, between = len(y) - int(J.shape[1]), 0.0
+    dof, between, t_dof = len(y) - int(J.shape[1]), 0.0, known_dof
     chi2 = _solved(J, y, known)[2]
     if dof and chi2 > dof:
         most = 1.001 * _solved(J, y, shape)[2] / dof  # χ² is less than n - p there
         between = brentq(lambda v: 1 - dof / _solved(J, y, known + v * shape)[2], 0, most, xtol=1e-15 * most)
-        pooled_chi2, pooled_dof = 0.0, 0
+        t_dof = dof
     variance = known + between * shape
-    coefficients, covariance, rest = _solved(J, y, variance)
-    dof += pooled_dof
-    scale = max((rest + pooled_chi2) / dof if dof else 1.0, least / float(variance.min()))
-    return Line(coefficients, covariance, variance, scale, dof or NORMAL_DOF, chi2, between)
+    coefficients, covariance, _ = _solved(J, y, variance)
+    sigma = np.sqrt(variance)
+    return Line(J, y, known, shape, known_dof, coefficients, covariance, sigma, t_dof, chi2, between)
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
@@ -104,45 +110,42 @@ Judge = Callable[[Selection], tuple[Column, Any]]
 """Return how many standard deviations each value is from a fit of those kept, and degrees of freedom."""
 
 
-def outliers(judge: Judge, count: int, free: int, level: float) -> Mapping[int, float]:
+def outliers(judge: Judge, count: int, free: int, level: float) -> dict[int, float]:
     """Return outliers among ``count`` values, by distances (in standard deviations) from the others (Rosner).
 
     The value that is farthest from the fit of those kept is left out, and judged by the fit of the others;
     this goes on, and all values are outliers up to the last that chance does not explain. ``free`` are the
     degrees of freedom with all values, and ``level`` the probability that a sound set has an outlier.
     """
-    kept, left_out, found = np.ones(count, dtype=bool), list[int](), dict[int, float]()
+    kept, left_out, distances = np.ones(count, dtype=bool), list[int](), dict[int, float]()
     with suppress(CannotSeparate):
         distance, _ = judge(kept)
         for _ in range(min(MOST_OUTLIERS, max(1, free // 3), free - 1)):
-            # Two repeats are equally far from each other: float32 keeps their order.
-            i = int(np.argmax((np.abs(distance) * kept).astype(np.float32)))
+            # Two repeats are equally far from each other: of two that differ by rounding, the first counts.
+            far = np.abs(distance) * kept
+            i = int(np.argmax(far > (1 - 1e-6) * far.max()))
             kept[i] = False
             left_out.append(i)
             distance, dof = judge(kept)
             if stdtr(dof, -np.abs(distance))[i] < level / (2 * count):  # of one value, on one side
-                found = {j: float(distance[j]) for j in left_out}
-    return found
+                distances = {j: float(distance[j]) for j in left_out}
+    return distances
 
 
-def judge_of_line(linear: Linear) -> Judge:
-    """Judge values by the line of those kept.
+def distances_from(line: Line, kept: Selection) -> tuple[Column, Any]:
+    """Judge the values of a line by a line of those ``kept``.
 
     The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite.
     """
-
-    def judge(kept: Selection) -> tuple[Column, Any]:
-        J, y, known, shape = (column[kept] for column in linear[:4])
-        line = fit_line(Linear(J, y, known, shape, linear.least, linear.repeats))
-        between = line.between * linear.shape
-        of_line = np.einsum("ij,jk,ik->i", linear.J, line.covariance, linear.J)
-        spread = line.scale * (linear.known + between + np.where(kept, -1, 1) * of_line)
-        distance = (linear.y - linear.J @ line.coefficients) / np.sqrt(np.maximum(spread, linear.least))
-        share = between / (linear.known + between)
-        dof = 1 / (share**2 / line.dof + (1 - share) ** 2 / (linear.repeats[1] or NORMAL_DOF))
-        return distance, dof if line.between else line.dof
-
-    return judge
+    J, y, known, shape = line[:4]
+    others = fit_line(J[kept], y[kept], known[kept], shape[kept], line.known_dof)
+    between = others.between * shape
+    of_line = np.einsum("ij,jk,ik->i", J, others.covariance, J)
+    own = known + between
+    spread = np.maximum(own + np.where(kept, -1, 1) * of_line, LEAST_SHARE * own)
+    share = between / own
+    dof = 1 / (share**2 / others.t_dof + (1 - share) ** 2 / line.known_dof)
+    return (y - J @ others.coefficients) / np.sqrt(spread), dof
 
 
 def judge_of_repeats(values: Column, u: Column, run: Places, step: float) -> Judge:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from typing import NamedTuple
 
 EXTRAS = {"matplotlib": "figure", "polars": "batch", "scipy": "fit"}
 """The extras that bring optional packages."""
@@ -12,6 +13,35 @@ LONGEST_NAME = 255
 def shortened(text: str, most: int = 60) -> str:
     """Return the text as a message shows it: if it is too long, only its beginning and its end."""
     return text if len(text) <= most else f"{text[: most - 20]}...{text[-10:]}"
+
+
+class Option(NamedTuple):
+    """An option that a message names: --find a,b on the command line, find='a,b' in Python."""
+
+    name: str
+    value: str = ""
+
+
+Message = tuple[str | Option, ...]
+"""A message in parts, without a capital and a period, so that each door has its own words for options."""
+
+
+def sentence(message: Message, in_python: bool = False) -> str:
+    """Return a message as the command line words it, or as Python does."""
+    words = []
+    for part in message:
+        if isinstance(part, str):
+            words.append(part)
+        elif in_python:
+            words.append(f"{part.name}={part.value!r}" if part.value else part.name)
+        else:
+            words.append(f"--{part.name} {part.value}".rstrip())
+    return "".join(words)
+
+
+def joined(messages: Iterable[Message], between: str) -> Message:
+    """Return messages as one."""
+    return sum(((between, *message) for message in messages), Message())[1:]
 
 
 def in_quotes(value: object) -> str:

@@ -5,14 +5,15 @@ table does not say. Counted are the 95 % intervals that hold the truth, and thei
 least squares with the true variances, of the same quantities).
 """
 
+import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import optimize
 
-from atwood_cli.laboratory.fitting import Fitted, conditions_of, fitted
+from atwood_cli.laboratory.fitting import Conditions, Fitted, conditions_of, fitted
 from atwood_cli.laboratory.results import USUAL
 from atwood_cli.laboratory.runs import Kind, Runs
 from atwood_cli.laboratory.statistics import CannotSeparate
@@ -31,8 +32,8 @@ class Design(NamedTuple):
 
     ``u`` is that of a single time (s) or acceleration (m/s²), or of a time as a share of it if ``relative``; ``masses``
     that of each mass (kg), ``axle`` that of the axle's friction from run to run, a share; ``stated`` the uncertainties
-    that the table states, times this. Times are read to the ``step`` and too long by the ``delay`` (s). The model is
-    wrong by a ``string`` (kg/m), or by friction in proportion to the ``load``.
+    that the table states, times this. A part of ``u`` is ``common`` to all runs. Times are read to the ``step`` and too
+    long by the ``delay`` (s). The model is wrong by a ``string`` (kg/m), or by friction in proportion to the ``load``.
     """
 
     runs: int
@@ -48,6 +49,7 @@ class Design(NamedTuple):
     delay: float = 0.0
     string: float = 0.0
     load: bool = False
+    common: float = 0.0
 
     def __str__(self) -> str:
         """What differs from the usual."""
@@ -73,12 +75,33 @@ OTHERS = [
     Design(8, 1, 0.05),
     Design(8, 1, 0.01, kind="a"),
     Design(8, 3, 0.01, "vary", kind="a"),
-    *(Design(7, 3, 0.05, stated=times) for times in (1.0, 0.5, 2.0)),
     *(Design(8, repeats, 0.05, masses=2e-4, stated=1.0) for repeats in (3, 1)),
     *(Design(runs, repeats, 1e-4, step=1e-3) for runs, repeats in ((8, 5), (6, 3))),
     *(Design(8, repeats, 0.05, step=0.01) for repeats in (3, 1)),
 ]
 """Masses with a constant sum, which show a variance between runs least; accelerations; readings in steps."""
+STATED = [
+    *(Design(n, 1, 0.05, "vary", stated=times) for times in (1.0, 0.5, 0.2, 3.0) for n in (3, 5, 8, 12)),
+    *(Design(n, 1, 0.05, "vary", stated=1.0, common=0.046) for n in (3, 5, 8, 12)),
+    *(Design(n, 3, 0.05, "vary", stated=1.0) for n in (3, 5, 8, 12)),
+]
+"""Stated uncertainties: right, too small, too large, mostly common to all runs; with repeats."""
+CAUSES: dict[str, tuple[dict[str, str], Sequence[str], float, str, dict[str, int]]] = {
+    "nothing": ({}, USUAL, 0.0, "none", {"both": 0, "vary": 0}),
+    "M 50 % low": ({"M": "28g"}, ["axle"], 0.0, "rim_mass is", {"both": 92, "vary": 83}),
+    "axle 0": ({"axle": "0"}, ["rim_mass"], 0.0, "axle is", {"both": 97, "vary": 97}),
+    "axle 0, gravity": ({"axle": "0", "M": "56g"}, ["gravity"], 0.0, "axle is", {"vary": 93}),
+    "g 5 % low": ({"g": "9.316", "M": "56g"}, ["axle"], 0.0, "gravity", {"both": 81}),
+    "delay of 0.15 s": ({}, USUAL, 0.15, "all times", {"both": 99}),
+}
+"""By what is wrong: what is given, what is fitted, the delay, the words of the right cause, and the share (%) of sets in
+which it should be named, by how masses vary."""
+BESIDE_DELAY: list[tuple[list[str], dict[str, str]]] = [
+    (["rim_mass", "delay"], {"axle": "9mN"}),
+    (["gravity", "delay"], {"axle": "9mN", "M": "56g"}),
+    (["rim_mass", "axle", "delay"], {}),
+]
+"""Quantities that are fitted beside a delay, and what is given."""
 DELAYS = [
     Design(8, 5, 0.05, "both"),
     Design(8, 3, 0.05, "drops"),
@@ -122,8 +145,19 @@ class Set(NamedTuple):
             d.kind, self.l, self.h, self.drop, self.values, d.stated * d.u, u_mass, d.step or 1e-13
         )
 
-    def fit(self, *more: str) -> Fitted:
-        return fitted(self.runs(), conditions_of(NOTHING), [*USUAL, *more])
+    def fit(self, *more: str, given: Conditions | None = None, find: Sequence[str] = USUAL) -> Fitted:
+        return fitted(self.runs(), given or given_as(), [*find, *more])
+
+
+def given_as(**typed: str) -> Conditions:
+    """What is given, as typed."""
+    return conditions_of(NOTHING | {name: read_input(name, word) for name, word in typed.items()})
+
+
+def cause_of(fit: Fitted) -> str:
+    """What is said to repair the fit, "" if nothing is."""
+    causes = ["".join(map(str, message)) for message in fit.causes]
+    return next((words for words in causes if "fit better if" in words), "")
 
 
 def expected(kind: Kind, l: Any, h: Any, c: Any, f: Any, g: Any = G, drop: Any = DROP) -> Any:
@@ -133,16 +167,19 @@ def expected(kind: Kind, l: Any, h: Any, c: Any, f: Any, g: Any = G, drop: Any =
 
 
 def by_scipy(kind: Kind, l: Any, h: Any, measured: Any, names: Any = USUAL, **known: Any) -> tuple[Any, Any]:
-    """The values of these names by least squares, with ``sigma`` as weights, and their covariance."""
-    known = {"gravity": G, "drop": DROP, "sigma": None, **known}
+    """The values of these names by least squares, with ``sigma`` as uncertainties, and their covariance."""
+    usual = {"rim_mass": C, "axle": F, "gravity": G, "drop": DROP, "delay": 0.0, "off": 0.0, "which": 0.0}
+    known = {"sigma": None, **usual, **known}
 
     def ideal(_: Any, *values: float) -> Any:
         x = known | dict(zip(names, values, strict=True))
-        return expected(kind, l, h, x["rim_mass"], x["axle"], x["gravity"], x["drop"])
+        of_fall = expected(kind, l, h, x["rim_mass"], x["axle"], x["gravity"], x["drop"])
+        return of_fall + x["delay"] + x["off"] * x["which"]
 
-    start = [{"rim_mass": 0.03, "axle": 0.01, "gravity": G}[name] for name in names]
+    start = [{"rim_mass": 0.03, "axle": 0.01, "gravity": G, "delay": 0.3, "off": 0.0}[name] for name in names]
     tight: Any = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15) | {"jac": "3-point", "x_scale": "jac"}
-    found = optimize.curve_fit(ideal, l, measured, start, known["sigma"], method="trf", **tight)
+    absolute = known["sigma"] is not None
+    found = optimize.curve_fit(ideal, l, measured, start, known["sigma"], absolute, method="trf", **tight)
     return found[0], found[1]
 
 
@@ -180,7 +217,9 @@ def drawn(design: Design, random: Random) -> Set:
         load, mass = l + h + C + design.string * drop, design.string
         alpha, beta = (G * (h - l - mass * drop) - f) / load, 2 * G * mass / load
         ideal = (np.arccosh(1 + beta * drop / alpha) / np.sqrt(beta))[:, None]
-    noise = design.u * random.standard_normal((n, design.repeats))
+    noise = np.sqrt(design.u**2 - design.common**2) * random.standard_normal((n, design.repeats))
+    if design.common:
+        noise += design.common * random.standard_normal()
     values = (ideal * (1 + noise) if design.relative else ideal + noise) + design.delay
     return Set(design, l, h, drop, np.round(values / design.step) * design.step if design.step else values)
 
@@ -226,9 +265,9 @@ def counts(design: Design, sets: int, *more: str, seed: int = 1) -> Counts:
             fit = drawn(design, random).fit(*more)
         except CannotSeparate:
             continue
-        p, is_late = fit.whole.p_value, any("All times seem" in words for words in fit.delay)
-        said += bool(fit.outliers), p is not None and p < 0.05, is_late
-        ends = np.array([one.interval for one in fit.whole.results.values()])
+        p, cause = fit.line.p_value if fit.data.scatter.any() else None, cause_of(fit)
+        said += bool(fit.outliers), p is not None and p < 0.05, "all times" in cause
+        ends = np.array([one.interval for one in fit.results.values()])
         within.append((ends[:, 0] <= truth) & (truth <= ends[:, 1]))
         widths.append((ends[:, 1] - ends[:, 0]) / 2 / ideal)
     median, wide = np.quantile(widths, (0.5, 0.9), 0)
@@ -261,10 +300,47 @@ def blunders_named(design: Design, kind: str, number: int, sets: int) -> float:
     return named / sets
 
 
+def outliers_beside_delay(case: int, sets: int) -> tuple[float, Any]:
+    """The share of sets in which a time that is 0.06 s off is named, and the distances said of it over exact ones."""
+    find, typed = BESIDE_DELAY[case]
+    random, given, ratios = np.random.default_rng(1), given_as(**typed), list[float]()
+    for _ in range(sets):
+        made, off = drawn(Design(8, 1, 0.003, "vary", delay=0.3), random), int(random.integers(8))
+        made.values[off] += random.choice([-0.06, 0.06])
+        try:
+            said = [words[0] for run, words in made.fit(given=given, find=find).outliers if run == off]
+        except CannotSeparate as error:
+            said = re.findall(rf"row {off + 1} is [^;]+", str(error))
+        far = (float(re.findall(r"is ([\d.e+]+) standard", str(words))[0]) for words in said[:1])
+        values, covariance = by_scipy(
+            "time", made.l, made.h, made.values[:, 0], [*find, "off"], which=np.arange(8) == off
+        )
+        exact = abs(values[-1]) / np.sqrt(covariance[-1, -1])  # of one more quantity, in that time alone
+        ratios += (distance / exact for distance in far)
+    return len(ratios) / sets, np.quantile(ratios, (0.05, 0.95))
+
+
+def causes_named(case: str, sets: int, sums: str) -> Any:
+    """The shares of sets (%) of which a cause is said, the right one is, and it alone is."""
+    typed, find, delay, right, _ = CAUSES[case]
+    random, given, shares = np.random.default_rng(1), given_as(**typed), np.zeros(3)
+    for _ in range(sets):
+        try:
+            words = cause_of(drawn(Design(8, 3, 0.02, sums, delay=delay), random).fit(given=given, find=find))
+        except CannotSeparate as error:
+            words = str(error)
+        is_right = right in words
+        shares += "fit better if" in words, is_right, is_right and "cannot tell" not in words
+    return 100 * shares / sets
+
+
 def report(sets: int) -> Iterator[str]:
     yield f"{sets} sets each; c/f (/delay); 95 % intervals that hold the truth, %; widths over ideal ones"
     yield f"{'what is drawn':54} held      median     90 %       no result  outliers  scatter more  delay seen"
-    drawn_as = [*((one, ()) for one in [*CELLS, *OTHERS, *WRONG]), *((one, ("delay",)) for one in DELAYS)]
+    drawn_as: list[tuple[Design, tuple[str, ...]]] = [
+        *((one, ()) for one in [*CELLS, *OTHERS, *STATED, *WRONG])
+    ]
+    drawn_as += [(one, ("delay",)) for one in DELAYS]
     drawn_as += [(one._replace(delay=delay), ()) for one in DELAYS for delay in (0.0, 0.03, 0.15)]
     for design, more in drawn_as:
         one = counts(design, sets, *more)
@@ -279,6 +355,12 @@ def report(sets: int) -> Iterator[str]:
             f"{number} {kind}: {blunders_named(design, kind, number, sets):.2f}" for number, kind in cases
         )
         yield f"{runs} x {repeats}, blunders named: {', '.join(found)}"
+    for case, (find, _) in enumerate(BESIDE_DELAY):
+        share, ends = outliers_beside_delay(case, sets)
+        yield f"find {', '.join(find)}: an outlier named in {share:.2f}, at {ends.round(2)} of its distance"
+    for wrong, (*_, bars) in CAUSES.items():
+        shares = ", ".join(f"{sums} {causes_named(wrong, sets, sums).round()}" for sums in bars)
+        yield f"wrong: {wrong}; % of sets with a cause, the right one, it alone: {shares}"
 
 
 if __name__ == "__main__":
