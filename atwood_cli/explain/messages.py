@@ -163,7 +163,7 @@ def remarks(answers: Answers) -> list[str]:
     if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
         typed = as_typed(wrap.number)
         sentences.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
-    sentences += [*_on_weights(answers), *_on_direction(answers)]
+    sentences += _on_terms(answers)
     mu_k = decided.scene.mu_k
     if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:
         sentences.append("`mu_k` has no effect here, as the string does not slip.")
@@ -188,45 +188,30 @@ def remarks(answers: Answers) -> list[str]:
     return sentences
 
 
-def _on_weights(answers: Answers) -> list[str]:
-    """Say the masses of weights, and that a mass beside a weight is none."""
-    scene = answers.decided.scene
-    weights = {x: given for x, given in scene.terms if given.terms == WEIGHT and given.number}
-    if not weights:
-        return []
-    shown = [
-        (f"`{x}`", f"{_short(answers, given.number)} N", f"{_short(answers, getattr(scene, x))} kg")
-        for x, given in weights.items()
-    ]
-    names, forces, masses = map(" and ".join, zip(*shown, strict=True))
-    said = f"{names} is a weight of {forces}, the mass {masses}"
-    if len(weights) > 1:
-        said = f"{names} are weights of {forces}, the masses {masses}"
-    pull = "" if answers["acceleration"] == 0 else "; a pull that is no weight accelerates differently"
-    others = [
-        x for x in MASSES if x not in weights and getattr(scene, x) and x != answers.decided.motion.finds
-    ]
-    beside = [
-        f"`{x}` is a mass of {_short(answers, getattr(scene, x))} kg; for a weight give its unit."
-        for x in others
-    ]
-    return [f"{said}{pull}.", *beside]
+def _on_terms(answers: Answers) -> list[str]:
+    """Say the masses of weights, that a mass beside one is none, and which way a mass is taken to move."""
 
+    def short(number: Fraction) -> str:
+        return format_number(strip_zeros(_beside(answers, None)(number)))
 
-def _on_direction(answers: Answers) -> list[str]:
-    """Say which way the masses are taken to move, if one is found from a fall that does not tell."""
     scene, motion = answers.decided.scene, answers.decided.motion
-    if motion.a is not None or motion.finds not in MASSES or 0 in (scene.m1, scene.m2):
-        return []
-    name = "speed" if motion.drop is None else "drop"
-    if getattr(motion, name) > 0:
-        return [f"`m2` is taken to fall; if it rises, give a `{name}` below 0."]
-    return [f"`m2` rises, as `{name}` is below 0."]
-
-
-def _short(answers: Answers, number: Fraction) -> str:
-    """Return an exact number as the table shows numbers, without zeros at its end."""
-    return format_number(strip_zeros(_beside(answers, None)(number)))
+    weights = {x: short(given.number) for x, given in scene.terms if given.terms == WEIGHT and given.number}
+    each = [f"`{x}` is a weight of {weights[x]} N, the mass {short(getattr(scene, x))} kg" for x in weights]
+    of = f" of {min(weights.values())} N" if len(weights) == 1 else ""
+    pull = f"; a pull{of} that is no weight accelerates differently" if answers["acceleration"] != 0 else ""
+    beside = [x for x in MASSES if weights and x not in (*weights, motion.finds) and getattr(scene, x)]
+    sentences = [f"{', and '.join(each)}{pull}."] if weights else []
+    sentences += [
+        f"`{x}` is a mass of {short(getattr(scene, x))} kg; for a weight give its unit." for x in beside
+    ]
+    if motion.finds in MASSES and motion.a is None and 0 not in (scene.m1, scene.m2):
+        name = "speed" if motion.drop is None else "drop"
+        falls, below = (
+            f"is taken to fall; if it rises, give a `{name}` below 0",
+            f"rises, as `{name}` is below 0",
+        )
+        sentences.append(f"`m2` {falls if getattr(motion, name) > 0 else below}.")
+    return sentences
 
 
 def _on_pulley(answers: Answers, mass: Fraction | float) -> Answers:

@@ -5,6 +5,7 @@ In slip the pulley's mass does not enter the motion, so that a gives the kinetic
 """
 
 from collections.abc import Mapping
+from fractions import Fraction
 from math import inf
 from types import SimpleNamespace
 from typing import Any
@@ -49,33 +50,28 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
     ``find`` names that input; without it, the one that is lacking is found.
     """
     given = [name for name in MEASURED if inputs[name].given is not None]
-    fall = [name for name in FALL if name in given]
-    a_given = "a" in given
-    if find and not a_given and len(fall) < 2:
+    fall = [name for name in given if name in FALL]
+    is_measured = "a" in given or len(fall) > 1
+    if find and not is_measured:
         raise SceneError("find", find, f"needs a measured motion: a, or two of {', '.join(FALL)}")
-    if len(fall) > 1 and (a_given or len(fall) > 2):
-        excess = "a" if a_given else fall[2]
+    if len(fall) > 1 and (excess := [name for name in given if name not in fall[:2]]):
         rule = f"is one too many beside {fall[0]} and {fall[1]}, which give the acceleration; leave one out"
-        raise SceneError(excess, inputs[excess].given, rule)
-    name = "a" if a_given else fall[-1]
-    finds = _asked(inputs, find) or _mass_to_find(inputs, name) if a_given or len(fall) > 1 else None
+        raise SceneError(excess[0], inputs[excess[0]].given, rule)
+    name = "a" if "a" in given else fall[-1]
+    finds = _unknown(inputs, find, name) if is_measured else None
     values = SimpleNamespace(**checked(inputs, finds or ""))
     measured, terms = own_values(inputs, MEASURED)
     values.terms += (*terms.items(),)
-    if not finds and (a_given or len(fall) > 1):
-        finds = _left_to_find(values)
-    values.motion = Motion(**measured, finds=finds, direction=_direction(values, measured, finds))
-    for x in fall:
-        if measured[x] < 0 and (finds not in MASSES or a_given or 0 in (values.m1, values.m2)):
-            raise SceneError(x, inputs[x].given, NOT_BELOW_0)
+    values.motion = Motion(**measured, finds=finds, direction=_direction(values, measured["a"], finds))
+    one_falls = finds in MASSES and "a" not in given and 0 not in (values.m1, values.m2)
+    if below_0 := [x for x in fall if measured[x] < 0 and not one_falls]:
+        raise SceneError(below_0[0], inputs[below_0[0]].given, NOT_BELOW_0)
     if not finds:
         return Scene(**vars(values))
-    for x, in_terms in values.terms:
-        if finds == in_terms.terms.by == "g":
-            rule = (
-                f"is {in_terms.terms.words}, and g is to be found; give g, or {x} in {parameter_of(x).unit}"
-            )
-            raise SceneError(x, inputs[x].given, rule)
+    if by_g := [(x, terms.words) for x, (_, terms) in values.terms if finds == terms.by]:
+        x, words = by_g[0]
+        rule = f"is {words}, and g is to be found; give g, or {x} in {parameter_of(x).unit}"
+        raise SceneError(x, inputs[x].given, rule)
     rule = _contradiction(values, inputs["g"].given is not None)
     if not rule:
         try:
@@ -88,38 +84,30 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
     return scene
 
 
-def _asked(inputs: Mapping[str, Input], find: str | None) -> str | None:
-    """Return the input that is asked for. Raises SceneError if it is given."""
-    if find and inputs[find].given is not None:
-        raise SceneError("find", find, f"conflicts with {find}, which is given; leave one of them out")
-    return find
-
-
-def _mass_to_find(inputs: Mapping[str, Input], name: str) -> str | None:
-    """Return the mass that is not given, if the other one is. Raises SceneError without a pulley."""
+def _unknown(inputs: Mapping[str, Input], find: str | None, name: str) -> str:
+    """Return the input that a motion finds: the one that is asked for, or is lacking. Raises SceneError."""
+    if find:
+        if inputs[find].given is not None:
+            raise SceneError("find", find, f"conflicts with {find}, which is given; leave one of them out")
+        return find
+    M, has_pulley = inputs["M"].value, not (inputs["M"].value is None is inputs["I"].value)
     missing = [mass for mass in MASSES if inputs[mass].value is None]
-    if len(missing) != 1:
-        return None
-    if inputs["M"].value is None is inputs["I"].value:
-        raise SceneError(missing[0], None, f"is missing; give it, or M, with which {name} finds it")
-    return missing[0]
+    if len(missing) == 1:
+        if not has_pulley:
+            raise SceneError(missing[0], None, f"is missing; give it, or M, with which {name} finds it")
+        return missing[0]
+    slides = M == inf or (inputs["mu"].value is not None and M is not None)
+    return "mu_k" if slides else "g" if has_pulley else "M"
 
 
-def _left_to_find(values: Values) -> str:
-    """Return the input that a motion finds beside both masses, if none is asked for."""
-    if values.M == inf or (values.mu is not None and values.M is not None):
-        return "mu_k"
-    return "M" if values.M is None and values.I is None else "g"
-
-
-def _direction(values: Values, measured: Mapping[str, Any], finds: str | None) -> int:
+def _direction(values: Values, a: Fraction | None, finds: str | None) -> int:
     """Return the direction of a motion that the masses do not tell, as `Motion` has it."""
     if finds in MASSES:
         return -1 if values.m2 == 0 else 1  # only m1 can fall beside an end fixed to the pulley
     if finds != "axle":
         return 0
-    a = measured["a"] or 0  # equal masses move only if they slow down
-    return (values.m2 > values.m1) - (values.m2 < values.m1) or (a < 0) - (a > 0)
+    sign = (values.m2 > values.m1) - (values.m2 < values.m1)
+    return sign or ((a < 0) - (a > 0) if a else 0)  # equal masses move only if they slow down
 
 
 def _contradiction(values: Values, g_given: bool) -> str:
