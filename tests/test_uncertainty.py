@@ -18,7 +18,7 @@ from atwood_cli.numbers.digits import rounding_to_uncertainty, to_digits, with_u
 from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.decisions import Decisions
-from atwood_cli.solver.scene import Angle
+from atwood_cli.solver.scene import Angle, InTerms
 
 from .conftest import many
 from .tools.running import LOADED, called, process
@@ -89,13 +89,22 @@ def ends_of(x: str, given: Mapping[str, Any], step: Fraction) -> dict[str, Any]:
     """What is given, with an input so much more, but not below 0, and mu_k at most mu."""
     value = given[x]
     number = min(max(getattr(value, "number", value) + step, 0), given["mu"] if x == "mu_k" else inf)
-    there = {**given, x: type(value)(number, value.unit) if hasattr(value, "unit") else number}
+    there = {**given, x: value._replace(number=number) if hasattr(value, "number") else number}
     return there | ({"mu_k": min(given["mu_k"], number)} if x == "mu" and given.get("mu_k") else {})
+
+
+def as_text(value: Any) -> Any:
+    """What was given in other terms, as it is typed."""
+    return f"{value.number}{value.unit}" if isinstance(value, InTerms) else value
+
+
+def solved(given: Mapping[str, Any]) -> Any:
+    return solve(**{x: as_text(value) for x, value in given.items()}, digits=70)
 
 
 def solved_if_valid(given: Mapping[str, Any]) -> Any:
     try:
-        return solve(**given, digits=70)
+        return solved(given)
     except SceneError:
         return None
 
@@ -109,7 +118,7 @@ def test_an_uncertainty_is_made_of_steps_that_solve_makes() -> None:
             typed = drawn(rng)
             read = {x: read_input(x, value) for x, value in typed.items()}
             given = {x: one.value for x, one in read.items()}
-            here, found = solve(**given, digits=70), solve(**typed, digits=15)
+            here, found = solved(given), solve(**typed, digits=15)
             ends = {}
             for x, one in read.items():
                 if one.uncertainty:

@@ -22,17 +22,17 @@ DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
 REMARKS = {
-    "m1": ', 250g or "2 lb"; 20N, 2kN or 5lbf is its weight',
+    "m1": ", 250g, 2lb, 20N",
     "M": "; inf locks it",
     "mu_k": "; mu if not given",
     "g": ", or a planet, moon or pluto; 9.80665 if not given",
     "inertia": ", or disk, hoop, ring, sphere, shell; 0.5 if not given",
     "I": ", instead of inertia; needs R",
     "wrap": ": degrees, 3rad, pi/2, 2.5turn (half a turn and two whole turns); 180 if not given",
-    "axle": ", as 15mN, or a torque with its unit, as 0.4mNm (needs R)",
-    "a": ", or 0.3g, 5rad/s2 (needs R): finds M, or a mass, g, mu_k, axle",
+    "axle": ", 15mN, or a torque, 0.4mNm (needs R)",
+    "a": ", 0.3g, 5rad/s2: finds M, or a mass, g, mu_k",
     "drop": ": two of drop, time, speed stand for a, one gives the others",
-    "speed": ", or 20rad/s of the rim (needs R)",
+    "speed": ", or 20rad/s",
 }
 
 

@@ -41,7 +41,7 @@ Find = Annotated[
         "Measured",
         metavar="NAME",
         words=lambda: {name: INPUTS[name].meaning for name in FINDABLE},
-        help="What the motion finds: M, g, m1, m2, mu_k, axle; the one that is lacking if not given.",
+        help="What the motion finds: m1, m2, M, g, mu_k or axle.",
     ),
 ]
 Expect = Annotated[
@@ -57,8 +57,8 @@ Examples:
   atwood solve --m1 '55.0(1)g' --m2 60+-0.1g --a 0.380 --R 5cm
   atwood solve --m1 1 --m2 3 --M 10 --mu 0.3 --explain
 
-Any number may carry its standard uncertainty; results then have theirs. For
-hoists, lifts, motors and units see examples/hoist.md.
+Any number may carry its standard uncertainty; results then have theirs.
+Hoists, motors, all units: examples/hoist.md.
 """
 
 

@@ -17,7 +17,7 @@ from ..numbers.rational import EXACT, Irrational
 from ..solver.answers import Answers
 from ..solver.machine import Machine
 from ..solver.quantities import QUANTITIES
-from ..solver.scene import ANGULAR_ACCELERATION, ANGULAR_SPEED, MULTIPLE_OF_G, TORQUE, WEIGHT
+from ..solver.scene import MASSES
 
 INPUT_DIGITS = 17
 """Digits up to which an input is put in as it was typed."""
@@ -71,16 +71,6 @@ UNIT_BY_NAME = {
 """The units of intermediate values, by name, and of inputs, by symbol."""
 REFERRED_TO = ("capstan_ratio", "critical_pulley_mass", "mu_verge")
 """Quantities that equations of others refer to."""
-TERM_SYMBOLS = {
-    ("m1", WEIGHT): "W1",
-    ("m2", WEIGHT): "W2",
-    ("M", WEIGHT): "W_M",
-    ("axle", TORQUE): "τ_axle",
-    ("a", MULTIPLE_OF_G): "n_g",
-    ("a", ANGULAR_ACCELERATION): "α_given",
-    ("speed", ANGULAR_SPEED): "ω_given",
-}
-"""Symbols of inputs as they were given in other terms."""
 WITHOUT_AXLE_FRICTION = {"f_axle": 0, "b": 0, "D": 1}
 """Values of symbols if the axle has no friction."""
 
@@ -109,7 +99,10 @@ class Derivation:
     def _values(self) -> dict[str, Fraction | None]:
         """Return what is given or found, by symbol."""
         decided, scene, motion = self.decided, self.scene, self.decided.motion
-        terms = {TERM_SYMBOLS[x, given.terms]: abs(given.number) for x, given in scene.terms}
+        terms = {
+            f"{given.terms.symbol}{x[1:] if x in MASSES else ''}": abs(given.number)
+            for x, given in scene.terms
+        }
         return {
             **{name: getattr(scene, name) for name in ("m1", "m2", "g", "I", "R")},
             "M": decided.pulley_mass,

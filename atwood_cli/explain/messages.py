@@ -125,7 +125,7 @@ def _on_the_verge(answers: Answers) -> str:
         "On the verge of slipping: as `M` is not given, this is for the critical pulley mass,"
         f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on a"
         f" massless one the acceleration is {_say(massless, 'acceleration')} m/s². On a locked pulley"
-        f" (--M inf) it slips: {format_number(enough)} is needed."
+        f" (`--M inf`) it slips: {format_number(enough)} is needed."
     )
 
 

@@ -231,6 +231,6 @@ IN_PROSE = (
     {name: f"`{about.letters}`" for name, about in QUANTITIES.items() if name not in INPUTS}
     # Names of one or two letters are symbols themselves.
     | {name: f"{about.axis} `{about.symbol}`" for name, about in (INPUTS | MEASURED).items() if len(name) > 2}
-    | {"mu": "`μ`", "mu_k": "`μ_k`", "axle": "axle friction", "inf": "`∞`"}
+    | {"mu": "`μ`", "mu_k": "`μ_k`", "axle": "axle friction", "inf": "`∞`", "--M inf": "`M` = `∞`"}
 )
 """Symbols for names of the program; a name that is not here is its own symbol."""

@@ -21,8 +21,7 @@ Divisions come before products that could leave the range of doubles though the 
 Most examples are of l = 1, h = 3, c = 5 and g = 9, so that a = 2, T_l = 11 and T_h = 21.
 """
 
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable
 
 from ..numbers.rational import N
 
@@ -166,23 +165,6 @@ def acceleration_by_speed(drop: N, speed: N) -> N:
     2.0
     """
     return speed * speed / (2 * drop)
-
-
-def acceleration_in_time(time: N, speed: N) -> N:
-    """Return the constant acceleration (m/s²) from rest to ``speed`` (m/s) in ``time`` (s).
-
-    >>> acceleration_in_time(3, 6)
-    2.0
-    """
-    return speed / time
-
-
-ACCELERATION_OF_FALL: Mapping[tuple[str, ...], Callable[[Any, Any], Any]] = {
-    ("drop", "time"): acceleration_of_fall,
-    ("drop", "speed"): acceleration_by_speed,
-    ("time", "speed"): acceleration_in_time,
-}
-"""The acceleration of a fall from rest, by what was measured of it."""
 
 
 def height_in_time(a: N, time: N) -> N:

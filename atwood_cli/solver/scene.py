@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn, cast
 
 from ..numbers.digits import as_typed, to_double
 from ..numbers.text import in_quotes, shortened
@@ -51,12 +51,13 @@ class Angle(NamedTuple):
 
 
 class Terms(NamedTuple):
-    """Terms in which an input may be given besides its own: in words, their dimension, and their SI unit.
+    """Terms in which an input may be given besides its own, and the symbol, dimension and SI unit there.
 
     The input is the number given times another input, ``by``, or divided by it.
     """
 
     words: str
+    symbol: str
     dimension: str
     unit: str
     by: str
@@ -71,11 +72,11 @@ class Terms(NamedTuple):
         return own * by if self.divided else own / by
 
 
-WEIGHT = Terms("a weight", "force", "N", "g", divided=True)
-TORQUE = Terms("a torque", "torque", "Nm", "R", divided=True)
-ANGULAR_ACCELERATION = Terms("an angular acceleration", "angular acceleration", "rad/s²", "R")
-ANGULAR_SPEED = Terms("an angular speed", "angular speed", "rad/s", "R")
-MULTIPLE_OF_G = Terms("a multiple of g", "gravity", "g", "g")
+WEIGHT = Terms("a weight", "W", "force", "N", "g", divided=True)
+TORQUE = Terms("a torque", "τ_axle", "torque", "Nm", "R", divided=True)
+ANGULAR_ACCELERATION = Terms("an angular acceleration", "α_given", "angular acceleration", "rad/s²", "R")
+ANGULAR_SPEED = Terms("an angular speed", "ω_given", "angular speed", "rad/s", "R")
+MULTIPLE_OF_G = Terms("a multiple of g", "n_g", "gravity", "g", "g")
 
 
 class InTerms(NamedTuple):
@@ -178,14 +179,10 @@ class Parameter(NamedTuple):
 
 
 # fmt: off
+A_MASS: Any = ("mass", "kg", True, False, "mass", {}, False, (WEIGHT,))
 INPUTS = {
-    "m1": Parameter(
-        "mass on one end of the string", "m₁", "mass", "kg",
-        may_be_zero=True, dimension="mass", terms=(WEIGHT,),
-    ),
-    "m2": Parameter(
-        "mass on the other end", "m₂", "mass", "kg", may_be_zero=True, dimension="mass", terms=(WEIGHT,)
-    ),
+    "m1": Parameter("mass on one end of the string", "m₁", *A_MASS),
+    "m2": Parameter("mass on the other end", "m₂", *A_MASS),
     "M": Parameter(
         "mass of the pulley", "M", "pulley mass", "kg",
         may_be_zero=True, may_be_infinite=True, dimension="mass", terms=(WEIGHT,),
@@ -277,8 +274,15 @@ class Motion(NamedTuple):
         """Return the measured acceleration (m/s²) of the heavier mass: m2 if its sign is 1, m1 if -1."""
         if self.a is not None:
             return sign * self.a
-        first, second = (getattr(self, name) for name in self.fall)
-        a: Fraction = physics.ACCELERATION_OF_FALL[self.fall](first, second)
+        drop, time, speed = (cast(Fraction, getattr(self, name)) for name in FALL)
+        if drop is None:
+            a = speed / time
+        else:
+            a = (
+                physics.acceleration_by_speed(drop, speed)
+                if time is None
+                else physics.acceleration_of_fall(drop, time)
+            )
         return sign * self.direction * a if self.finds in MASSES else a
 
 
