@@ -57,8 +57,7 @@ Examples:
   atwood solve --m1 '55.0(1)g' --m2 60+-0.1g --a 0.380 --R 5cm
   atwood solve --m1 1 --m2 3 --M 10 --mu 0.3 --explain
 
-Any number may carry its standard uncertainty; results then have theirs.
-Hoists, motors, all units: examples/hoist.md.
+Any number may carry its uncertainty. For hoists see examples/hoist.md.
 """
 
 
