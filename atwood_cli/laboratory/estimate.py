@@ -196,5 +196,5 @@ def _least_squares(
         "x_scale": "jac",
         "max_nfev": 100,
     }
-    found = least_squares(rest, start, bounds=(least, inf), **exactly)
-    return dict(zip(names, found.x.tolist(), strict=True))
+    best = least_squares(rest, start, bounds=(least, inf), **exactly)
+    return dict(zip(names, best.x.tolist(), strict=True))

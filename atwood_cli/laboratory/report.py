@@ -32,9 +32,9 @@ NEEDS = {
 def verdict(fit: Fitted) -> str:
     """Return how many runs there are, and which quantities differ from 0 as shown."""
     measurements = counted(int(fit.data.counts.sum()), MEASURED[fit.runs.kind])
-    said = [f"{counted(len(fit.data.l), 'run')}, {measurements}."]
+    sentences = [f"{counted(len(fit.data.l), 'run')}, {measurements}."]
     if not fit.names:
-        said.append("Nothing is left to fit: the pulley and its axle are given.")
+        sentences.append("Nothing is left to fit: the pulley and its axle are given.")
     for name in USUAL:
         if name in fit.results:
             value, u, (low, high) = fit.results[name]
@@ -44,8 +44,8 @@ def verdict(fit: Fitted) -> str:
             elif value < -u:
                 verb = f"is below 0 by {rounded(-value / u)} standard uncertainties, which chance may explain"
             most = f"; it may be up to {cut(high, u)} {QUANTITIES[name].unit}" if low <= u / 20 < high else ""
-            said.append(_capital(f"{QUANTITIES[name].words} {verb}{most}."))
-    return " ".join(said)
+            sentences.append(_capital(f"{QUANTITIES[name].words} {verb}{most}."))
+    return " ".join(sentences)
 
 
 def _scatter(fit: Fitted) -> str:
@@ -53,7 +53,9 @@ def _scatter(fit: Fitted) -> str:
     p_value = fit.line.p_value
     if p_value is None:
         return "There are as many runs as results, so nothing is left to test the fit."
-    if (digits := _digits_of_agreement(fit)) is not None:
+    share = np.max(np.abs(fit.data.measured - expected(fit.data, fit.values)) / fit.data.measured)
+    if share < COMPUTED:
+        digits = int(-log10(max(float(share), ROUNDING)))
         return f"The runs agree with the fit to {digits} digits, as computed data do."
     if not fit.data.scatter.any():
         return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."
@@ -73,13 +75,6 @@ def _scatter(fit: Fitted) -> str:
     return f"The runs agree with the fit within chance, by their {by}."
 
 
-def _digits_of_agreement(fit: Fitted) -> int | None:
-    """Return to how many digits the fit is that of computed data; None if it is that of a laboratory."""
-    residual = np.abs(fit.data.measured - expected(fit.data, fit.values)) / fit.data.measured
-    share = max(float(residual.max()), ROUNDING)
-    return None if share > COMPUTED else int(-log10(share))
-
-
 def _capital(words: str) -> str:
     return f"{words[0].upper()}{words[1:]}"
 
@@ -87,11 +82,11 @@ def _capital(words: str) -> str:
 def conditions(fit: Fitted) -> str:
     """Return what is the same in all runs, in words."""
     inputs = fit.given.inputs
-    uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
+    uncertain = {name: typed.uncertainty for name, typed in inputs.items() if typed.uncertainty}
     words = inputs_in_words(fit.given.scene, uncertain)
     g = "" if "gravity" in fit.names else "g"
     inertia = "" if inputs["M"].given is None else "inertia"
-    shown = (x for x, one in inputs.items() if one.given is not None or x in (g, inertia, "drop"))
+    shown = (x for x, typed in inputs.items() if typed.given is not None or x in (g, inertia, "drop"))
     return ", ".join(words[x] for x in shown if x in words)
 
 
@@ -107,8 +102,8 @@ def results_of(fit: Fitted, in_python: bool = False) -> Fit:
     known = bool(fit.data.scatter.any())
     return Fit(
         **{name: fit.results[name].value if name in fit.results else None for name in QUANTITIES},
-        uncertainty={name: one.uncertainty for name, one in fit.results.items()},
-        interval={name: list(one.interval) for name, one in fit.results.items()},
+        uncertainty={name: result.uncertainty for name, result in fit.results.items()},
+        interval={name: list(result.interval) for name, result in fit.results.items()},
         correlation=_correlation(fit.line.covariance),
         chi2=fit.line.chi2 if known else None,
         dof=fit.line.dof,
@@ -121,23 +116,24 @@ def results_of(fit: Fitted, in_python: bool = False) -> Fit:
 
 def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     """Return a fit in the forms in which it may be asked for; ``only`` names results."""
-    found, results = results_of(fit), fit.results
-    record = found.to_dict()
+    public, results = results_of(fit), fit.results
+    record = public.to_dict()
     asked = {name: record[name] for name in only or record}
     rows: Sequence[Mapping[str, Any]] = [asked]
-    said = [*found.notes]
+    sentences = [*public.notes]
     if only == ["runs"]:
-        rows = found.runs
+        rows = public.runs
     elif only:
-        said = [equation(x, *results[x][:2]) for x in only if x in results]
-        said += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
-        said += [*found.notes[1 : 1 + len(fit.outliers)], *found.notes[len(found.notes) - len(fit.causes) :]]
+        sentences = [equation(x, *results[x][:2]) for x in only if x in results]
+        sentences += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
+        first_cause = len(public.notes) - len(fit.causes)
+        sentences += [*public.notes[1 : 1 + len(fit.outliers)], *public.notes[first_cause:]]
     else:
         names = "quantity", "value", "uncertainty", "low", "high", "unit"
-        each = ((x, *one[:2], *one.interval, QUANTITIES[x].unit) for x, one in results.items())
-        rows = [dict(zip(names, one, strict=True)) for one in each]
+        each = ((x, *result[:2], *result.interval, QUANTITIES[x].unit) for x, result in results.items())
+        rows = [dict(zip(names, result, strict=True)) for result in each]
     bare = [cell(record[name]) for name in only]
-    return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, found), lambda: said, bare)
+    return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, public), lambda: sentences, bare)
 
 
 def _correlation(covariance: Any) -> float | None:
@@ -166,20 +162,20 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
     ]
 
 
-def _print_page(fit: Fitted, found: Fit) -> None:
+def _print_page(fit: Fitted, public: Fit) -> None:
     """Print the conditions, the runs, what there is to say, and the results."""
     page, kind, results, first = Page(), fit.runs.kind, fit.results, 1 + len(fit.outliers)
     page.say(conditions(fit))
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
-    _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
+    _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, public))
     between = " It includes a scatter of forces between runs." if fit.line.between else ""
     has_columns = fit.data.stated or fit.data.uncertain
     independent = " Uncertainties in columns count as independent from row to row." if has_columns else ""
-    page.say(f"u is the standard uncertainty of a run's mean.{between}{independent}", *found.notes[first:])
-    page.say(*found.notes[:first], style="bold")
+    page.say(f"u is the standard uncertainty of a run's mean.{between}{independent}", *public.notes[first:])
+    page.say(*public.notes[:first], style="bold")
     if results:
-        numbers = ((x, published(*one), QUANTITIES[x]) for x, one in results.items())
+        numbers = ((x, published(*result), QUANTITIES[x]) for x, result in results.items())
         rows = [(x, both, words.unit, words.symbol, ends) for x, (both, ends), words in numbers]
         value = "Value (outliers included)" if fit.outliers else "Value"
         _print_table(page, ("Quantity", value, "Unit", "Symbol", "95 % interval"), rows)
@@ -189,12 +185,12 @@ def _print_table(page: Page, heads: Sequence[str], rows: Sequence[Sequence[str]]
     page.table(heads, [list(zip(*map(aligned, zip(*rows, strict=True)), strict=True))])
 
 
-def _rows(fit: Fitted, found: Fit) -> list[list[str]]:
+def _rows(fit: Fitted, public: Fit) -> list[list[str]]:
     """Return the cells of each run: the measurement, what is expected, and the residual."""
     # The mean has the digits of its own scatter.
     finest = float(min(fit.data.scatter.min() or np.inf, fit.line.sigma.min()))
     rows = []
-    for run in found.runs:
+    for run in public.runs:
         where, kind, u, residual = run["rows"].replace(" ", ","), fit.runs.kind, run["u"], run["residual"]
         numbers = format_number(run["m1"]), format_number(run["m2"]), cut(run[kind], finest)
         expected_and_u = cut(run["expected"], finest), cut(u, u)

@@ -27,12 +27,12 @@ QUANTITIES = {
     "pulley_mass": Quantity("M", "kg", "the pulley's mass, if its shape is given"),
     "moment_of_inertia": Quantity("I", "kg m²", "the moment of inertia, if R is given"),
 }
-FITTED = [name for name, one in QUANTITIES.items() if one.letter]
+FITTED = [name for name, quantity in QUANTITIES.items() if quantity.letter]
 USUAL = FITTED[:2]
 """Those that are fitted unless the user asks for others."""
-SYMBOLS = {one.letter or one.symbol: name for name, one in QUANTITIES.items()}
+SYMBOLS = {quantity.letter or quantity.symbol: name for name, quantity in QUANTITIES.items()}
 RESULTS = {
-    **{name: one.words for name, one in QUANTITIES.items()},
+    **{name: quantity.words for name, quantity in QUANTITIES.items()},
     "correlation": "the correlation of two results",
     "chi2": "χ² of the runs by the uncertainties stated, or by the scatter of repeats",
     "dof": "degrees of freedom: the runs less what is fitted",
