@@ -5,11 +5,11 @@ from typing import Annotated
 
 from ..explain import contact as balance
 from ..output.scene_page import contact_record, print_contact
-from ..output.text import Destination, Report, say, show
+from ..output.text import Destination, Picture, Report, say, show
 from ..reading.inputs import read_digits, read_scene
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
-from .options import DONE, OUTPUT, SCENE, Bare, Digits, FigureFile, option, with_options
+from .options import DONE, FIGURE, OUTPUT, SCENE, Digits, option, with_options
 
 HELP = """Show the forces along the arc of contact and their sum.
 
@@ -26,10 +26,11 @@ radian. --figure replaces the table.
 """
 
 
-@with_options(SCENE, OUTPUT)
+@with_options(SCENE, OUTPUT, FIGURE)
 def contact(
     given: Mapping[str, str | None],
     target: Destination,
+    picture: Picture | None,
     *,
     points: Annotated[
         str | None,
@@ -40,23 +41,21 @@ def contact(
         ),
     ] = None,
     digits: Digits = None,
-    figure: FigureFile = None,
-    bare: Bare = False,
 ) -> int:
     answers = Answers(read_scene(given), read_digits(digits))
     if not target.form:
         answers = answers.to_six_digits
-    if points is not None and figure is not None and not target.form and target.file is None:
+    if points is not None and picture is not None and not target.form and target.file is None:
         raise SceneError("points", points, "has no effect on a picture; leave it out")
     arc = balance.contact(answers, balance.USUAL_POINTS if points is None else points)
-    if figure is not None:
+    if picture is not None:
         from ..output.scene_figure import save_scene
 
-        save_scene(answers, figure, target.force, bare, curves=True)
+        save_scene(answers, picture, curves=True)
     report = Report(
         json=lambda: contact_record(answers, arc),
         records=lambda: arc.points,
-        page=lambda: print_contact(answers, arc, tables=figure is None or target.file is not None),
+        page=lambda: print_contact(answers, arc, tables=picture is None or target.file is not None),
         notes=lambda: arc.notes,
     )
     say(*show(report, target))

@@ -5,22 +5,11 @@ from typing import Annotated
 import typer
 
 from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
-from ..output.text import Destination, say, show
+from ..output.text import Destination, Picture, say, show
 from ..reading.names import divided, read_names
 from ..solver.scene import SceneError
 from ..tables.sources import Unreadable, cannot_read
-from .options import (
-    COULD_NOT,
-    DONE,
-    OUTPUT,
-    Bare,
-    FigureFile,
-    Labels,
-    check_figure,
-    option,
-    scene_option,
-    with_options,
-)
+from .options import COULD_NOT, DONE, FIGURE, OUTPUT, Labels, check_figure, option, scene_option, with_options
 
 Table = Annotated[
     str,
@@ -79,10 +68,11 @@ which nothing moves or the lighter side falls; they are not used. Others are lef
 """
 
 
-@with_options(OUTPUT)
+@with_options(OUTPUT, FIGURE)
 def fit(
     table: Table,
     target: Destination,
+    picture: Picture | None,
     *,
     find: Find = None,
     without: Without = None,
@@ -96,14 +86,12 @@ def fit(
     column: Column = None,
     label: Labels = None,
     only: Only = None,
-    figure: FigureFile = None,
-    bare: Bare = False,
 ) -> int:
     given = {"M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "g": g, "drop": drop}
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
     if "runs" in names and (not target.form or (target.form == "csv" and names[1:])):
         raise SceneError("only", "runs", "takes --json, or --csv and no other name")
-    check_figure(figure, target.force)
+    check_figure(picture)
     from ..laboratory import fit_of
     from ..laboratory.report import report_of
 
@@ -111,10 +99,10 @@ def fit(
         best = fit_of(table, given, find or [], label or [], divided(without or []), column or [])
     except Unreadable as error:
         raise cannot_read(table, error) from None
-    if figure is not None:
+    if picture is not None:
         from ..laboratory.fit_figure import save
 
-        save(best, bare, figure, target.force)
+        save(best, picture)
     report = report_of(best, names)
     say(*show(report, target))
     return COULD_NOT if "" in report.bare else DONE

@@ -11,7 +11,7 @@ from typing import Annotated, Any, get_args
 import typer
 
 from ..output.files import STDOUT, check_free
-from ..output.text import FORMS, Destination
+from ..output.text import FORMS, Destination, Picture
 from ..solver.quantities import NAMES, QUANTITIES
 from ..solver.scene import INPUTS, SceneError, parameter_of
 
@@ -77,7 +77,7 @@ NO_EFFECT = {
     "all_": f"{FORM_NAMES} only explain",
 }
 """By option, the others that cannot be used with it, in any command."""
-NEEDS = {"markdown": "explain", "bare": "figure", "force": "output figure"}
+NEEDS = {"markdown": "explain", "bare": "figure", "symbols": "figure", "force": "output figure"}
 """By option, the others of which it needs one, if the command has them."""
 
 
@@ -88,16 +88,22 @@ SCENE = {name: Annotated[str | None, scene_option(name)] for name in INPUTS}
 def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
     """Give a command groups of options by name, which typer sees one by one.
 
-    The command gets those of SCENE as ``given``, and those of `results` as ``target``.
+    The command gets those of SCENE as ``given``, those of `results` as ``target``, and those of FIGURE as
+    ``picture``.
     """
 
     def taking(command: Command) -> Command:
         parameters = inspect.signature(command).parameters.values()
-        own = [parameter for parameter in parameters if parameter.name not in ("given", "target")]
+        own = [parameter for parameter in parameters if parameter.name not in ("given", "target", "picture")]
 
         def run(**options: Any) -> int:
             _check(options)
-            read = {"given": {name: options[name] for name in INPUTS}} if SCENE in groups else {}
+            read: dict[str, Any] = {}
+            if SCENE in groups:
+                read["given"] = {name: options[name] for name in INPUTS}
+            if FIGURE in groups:
+                asked = [options[name] for name in ("figure", "force", "bare", "symbols")]
+                read["picture"] = None if asked[0] is None else Picture(*asked)
             arguments = {parameter.name: options[parameter.name] for parameter in own}
             return command(target=_read_target(options), **arguments, **read)
 
@@ -152,10 +158,16 @@ Columns = Annotated[
         help="A column for this quantity, in place of the usual seven; repeatable, or a,b.",
     ),
 ]
-FigureFile = Annotated[
-    str | None, option("Files", metavar="FILE", help="Draw a picture: .svg, .png or .pdf (extra: figure).")
-]
-Bare = Annotated[bool, option("Files", "--bare", help="With --figure: no title, as for a report.")]
+FIGURE: dict[str, Any] = {
+    "figure": Annotated[
+        str | None,
+        option("Files", metavar="FILE", help="Draw a picture: .svg, .png or .pdf (extra: figure)."),
+    ],
+    "bare": Annotated[bool, option("Files", "--bare", help="With --figure: no title, as for a report.")],
+    "symbols": Annotated[
+        bool, option("Files", "--symbols", help="With --figure: symbols to fill in, and no numbers.")
+    ],
+}
 Labels = Annotated[
     list[str] | None,
     option(
@@ -221,12 +233,12 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
 OUTPUT = results(*FORMS)
 
 
-def check_figure(figure: str | None, force: bool) -> None:
+def check_figure(picture: Picture | None) -> None:
     """Raise the errors of a picture before anything is solved: SceneError, OSError, ImportError."""
-    if figure is not None:
-        from ..output.figure import check_file
+    if picture is not None:
+        from ..output.figure import check_picture
 
-        check_file(figure, force)
+        check_picture(picture)
 
 
 # Help

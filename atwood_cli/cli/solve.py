@@ -6,7 +6,7 @@ from typing import Annotated
 from ..explain.conditions import failure, read_condition
 from ..explain.messages import reasons
 from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_steps, print_table, record
-from ..output.text import Destination, Report, cell, say, show
+from ..output.text import Destination, Picture, Report, cell, say, show
 from ..reading.answers import read_answers
 from ..reading.inputs import read_digits
 from ..reading.names import read_names
@@ -15,11 +15,10 @@ from ..solver.scene import FINDABLE, INPUTS, SceneError
 from .options import (
     COULD_NOT,
     DONE,
+    FIGURE,
     OUTPUT,
     SCENE,
-    Bare,
     Digits,
-    FigureFile,
     option,
     quantity_meanings,
     scene_option,
@@ -61,10 +60,11 @@ Any number may carry its uncertainty. For hoists see examples/hoist.md.
 """
 
 
-@with_options(SCENE, OUTPUT)
+@with_options(SCENE, OUTPUT, FIGURE)
 def solve(
     given: Mapping[str, str | None],
     target: Destination,
+    picture: Picture | None,
     *,
     a: Annotated[str | None, scene_option("a", "Measured")] = None,
     drop: Annotated[str | None, scene_option("drop", "Measured")] = None,
@@ -86,8 +86,6 @@ def solve(
     markdown: Annotated[
         bool, option("Output", "--markdown", help="With --explain: Markdown with LaTeX (-o FILE.md).")
     ] = False,
-    figure: FigureFile = None,
-    bare: Bare = False,
 ) -> int:
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     conditions = [read_condition(typed) for typed in expect or []]
@@ -97,10 +95,10 @@ def solve(
         raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
     if explain and answers.uncertain:
         raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
-    if figure is not None:
+    if picture is not None:
         from ..output.scene_figure import save_scene
 
-        save_scene(answers, figure, target.force, bare)
+        save_scene(answers, picture)
     values = [cell(answers[name]) for name in names]
     report = Report(
         json=lambda: record(answers, names, budget),

@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from functools import partial
 
 from ..numbers.text import counted
-from ..output.text import Destination, Report, say, show
+from ..output.text import Destination, Picture, Report, say, show
 from ..reading.inputs import read_digits
 from ..reading.names import read_names
 from ..sweep.ranges import read_sweep
 from ..sweep.sweep_figure import save_sweep
 from ..sweep.sweep_page import SweepPage
-from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Columns, Digits, FigureFile, with_options
+from .options import COULD_NOT, DONE, FIGURE, OUTPUT, SCENE, Columns, Digits, with_options
 
 HELP = """Solve a range or a list of scenes.
 
@@ -29,25 +29,24 @@ unit. A curve runs along a whole range, one for each value of a second range or 
 """
 
 
-@with_options(SCENE, OUTPUT)
+@with_options(SCENE, OUTPUT, FIGURE)
 def sweep(
     given: Mapping[str, str | None],
     target: Destination,
+    picture: Picture | None,
     *,
     only: Columns = None,
     digits: Digits = None,
-    figure: FigureFile = None,
-    bare: Bare = False,
 ) -> int:
     names = list(dict.fromkeys(read_names("only", only or [])))
     precision = read_digits(digits)
     swept = read_sweep(given, precision)
-    if figure is not None:
-        save_sweep(swept, names, precision, figure, target.force, bare)
+    if picture is not None:
+        save_sweep(swept, names, precision, picture)
     swept_page = SweepPage(swept, names, precision)
     try:
         # What is drawn is not printed, too, but to a file that is asked for.
-        page = partial(swept_page.page, table=figure is None or target.file is not None)
+        page = partial(swept_page.page, table=picture is None or target.file is not None)
         aside = show(Report(swept_page.json, swept_page.records, page, swept_page.notes), target)
     except KeyboardInterrupt:
         if swept_page.done:

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from itertools import chain
 from typing import Annotated
 
-from ..output.text import Destination, Report, show
+from ..output.text import Destination, Picture, Report, show
 from ..reading.inputs import read_whole
 from ..reading.names import read_names
-from .options import DONE, Bare, FigureFile, check_figure, option, results, with_options
+from .options import DONE, FIGURE, check_figure, option, results, with_options
 
 
 def _families() -> Mapping[str, str]:
@@ -37,9 +37,10 @@ Examples:
 """
 
 
-@with_options(results("json"))
+@with_options(results("json"), FIGURE)
 def tradeoff(
     target: Destination,
+    picture: Picture | None,
     *,
     family: Families = None,
     scenes: Annotated[
@@ -50,21 +51,19 @@ def tradeoff(
             help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given.",
         ),
     ] = None,
-    figure: FigureFile = None,
-    bare: Bare = False,
 ) -> int:
     from ..output.page import progress
     from ..tradeoff import tradeoff_page
     from ..tradeoff.measure import FAMILIES, MOST_SCENES, draw_scenes, measure
 
     families = list(dict.fromkeys(read_names("family", family or FAMILIES, FAMILIES, "family of scenes")))
-    check_figure(figure, target.force)
+    check_figure(picture)
     count = read_whole("scenes", DEFAULT_SCENES if scenes is None else scenes, 1, MOST_SCENES)
     parts = (measure(name, draw_scenes(name, count)) for name in families)
     with progress(parts, len(families)) as measuring:
         measured = list(chain.from_iterable(measuring))
-    if figure is not None:
-        tradeoff_page.save(measured, figure, target.force, bare)
+    if picture is not None:
+        tradeoff_page.save(measured, picture)
     report = Report(
         json=lambda: tradeoff_page.record(measured, count),
         records=list,

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..output.figure import BLUE, FAINT, INK, RED, page, typeset, write_beside
+from ..output.text import Picture
 from ..solver import physics
 from .estimate import accelerations, as_data, expected
 from .fitting import Fitted
@@ -12,12 +13,12 @@ from .report import conditions, verdict
 from .results import QUANTITIES, published
 
 MOST_NAMED = 40  # runs; of more, only outliers and those left out
-MEANING = {"rim_mass": "slope c", "axle": "intercept f_axle", "gravity": "g", "delay": "Δt"}
+MEANING = {"rim_mass": "slope c", "axle": "intercept f", "gravity": "g", "delay": "Δt"}
 """The fitted quantities, as the picture shows them."""
 
 
-def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
-    """Draw runs and their line to a file, below sentences unless it is bare. Raises OSError."""
+def save(fit: Fitted, picture: Picture) -> None:
+    """Draw runs and their line to a file. Raises OSError."""
     used, data = fit.used[fit.shown], as_data(fit.runs, fit.shown)
     g, c, f, delay = (fit.values[name] for name in ("gravity", "rim_mass", "axle", "delay"))
     a = accelerations(data, np.where(data.measured > delay, data.measured, np.nan), delay)
@@ -39,7 +40,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         for name, words in MEANING.items()
         if name in fit.results
     ]
-    with page(path, force, [conditions(fit), verdict(fit)], below, bare, panels=2) as figure:
+    with page(picture, [conditions(fit), verdict(fit)], below, panels=2) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
         for axes in line, rest:
             axes.margins(0, 0.15)

@@ -20,7 +20,7 @@ from ..numbers.text import LONGEST_NAME, shortened
 from ..solver.quantities import QUANTITIES
 from ..solver.scene import INPUTS, SceneError
 from .files import check_free, written_beside
-from .text import say, wrapped
+from .text import Picture, say, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,38 +67,37 @@ PICTURE_FORMATS: Any = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate"
 
 
 def axis_words(name: str) -> tuple[str, str]:
-    """Return the words and the symbol of a parameter or a quantity."""
+    """Return the words of a parameter or a quantity, and its symbol, if it has one in print."""
     about = INPUTS.get(name) or QUANTITIES[name]
-    return about.axis or name.rstrip("_12").replace("_", " "), about.symbol
+    return about.axis or name.rstrip("_12").replace("_", " "), "" if "_" in about.symbol else about.symbol
 
 
-def check_file(path: str, force: bool) -> None:
+def check_picture(picture: Picture) -> None:
     """Import matplotlib, and check that it can write the picture. Raises SceneError, ImportError, OSError."""
-    if Path(path).suffix[1:].lower() not in PICTURE_FORMATS:
-        raise SceneError(
-            "figure", path, f"must end in one of {', '.join(f'.{kind}' for kind in PICTURE_FORMATS)}"
-        )
+    path = Path(picture.file)
+    if path.suffix[1:].lower() not in PICTURE_FORMATS:
+        rule = f"must end in one of {', '.join(f'.{kind}' for kind in PICTURE_FORMATS)}"
+        raise SceneError("figure", picture.file, rule)
     os.environ["MPLBACKEND"] = "agg"
     getLogger("matplotlib").setLevel(ERROR)  # silent about settings of the user, which are not used
     import_module("matplotlib")
-    check_free(Path(path), force)
+    check_free(path, picture.force)
 
 
 @contextmanager
-def page(
-    path: str, force: bool, above: Sequence[str], below: str = "", bare: bool = False, panels: int = 1
-) -> Iterator["Figure"]:
+def page(picture: Picture, above: Sequence[str], below: str = "", panels: int = 1) -> Iterator["Figure"]:
     """Yield a figure with room for so many panels, below each other, save it and say so. Raises OSError.
 
-    The sentences ``above`` are written unless it is ``bare``. In the file, the first of them is the title,
-    and all others, with those ``below``, are the description.
+    The sentences ``above`` are written unless it is bare. In the file, the first of them is the title, and
+    all others, with those ``below``, are the description. With symbols alone, there is none of them.
     """
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    kind = Path(path).suffix[1:].lower()
-    title, *others = map(typeset, [*above, below])
+    path = Path(picture.file)
+    kind = path.suffix[1:].lower()
+    title, *others = ("", "") if picture.symbols else map(typeset, [*above, below])
     description = " ".join(others).strip()
     metadata = PICTURE_FORMATS[kind] | {
         "Title": title,
@@ -106,25 +105,35 @@ def page(
     }
     os.environ.pop("SOURCE_DATE_EPOCH", None)  # a figure has no date, whatever this is set to
     image = BytesIO()  # matplotlib would not report a full disk as we do
-    with written_beside(Path(path), force) as beside:
+    with written_beside(path, picture.force) as beside:
         with warnings.catch_warnings(action="ignore"), rc_context({**rcParamsDefault, **STYLE}):
             figure = Figure((WIDTH, HEIGHT + (panels - 1) * PANEL_HEIGHT), layout="constrained")
             FigureCanvasAgg(figure)  # knows the width of words
-            figure.suptitle("" if bare else "\n".join(map(_in_lines, above)))
-            figure.supxlabel(_in_lines(below), fontsize=9)
+            figure.suptitle("" if picture.bare or picture.symbols else "\n".join(map(_in_lines, above)))
+            figure.supxlabel("" if picture.symbols else _in_lines(below), fontsize=9)
             yield figure
+            if picture.symbols:
+                _leave_symbols(figure)
             figure.savefig(image, format=kind, metadata=metadata)
         content = image.getvalue()
         if kind == "svg":  # matplotlib leaves this out
             described = f"</title>\n<desc>{escape(description)}</desc>"
             content = content.replace(b"</title>", described.encode(), 1)
         beside.write_bytes(content)
-    say(f"wrote {shortened(path, LONGEST_NAME)}")
+    say(f"wrote {shortened(picture.file, LONGEST_NAME)}")
+
+
+def _leave_symbols(figure: "Figure") -> None:
+    """Take values off a picture: T₁ = 12 N becomes T₁. Scales and legends keep their numbers."""
+    for text in (text for axes in figure.axes for text in axes.texts):
+        text.set_text(re.sub(r"\s(=|from|beyond) .*", "", text.get_text()))
 
 
 def typeset(words: str) -> str:
     """Return words as print has them: symbols for names, minus signs, powers of ten, no endless digits."""
-    words = NAMES_IN_WORDS.sub(lambda name: INPUTS[name[0]].symbol, LONG_DIGITS.sub(r"\1…", words))
+    words = NAMES_IN_WORDS.sub(lambda name: [*filter(None, axis_words(name[0]))][-1], words)
+    words = re.sub(r" \(--[^)]*\)", "", words)  # options
+    words = LONG_DIGITS.sub(r"\1…", words)
     words = SIDES_IN_WORDS.sub(lambda name: name[0].translate(SUBSCRIPTS), words)
     words = EXPONENT.sub(lambda power: f" × 10{power[1].translate(SUPERSCRIPTS)}", words)
     return MINUS.sub("−", words)
@@ -134,17 +143,20 @@ def _in_lines(words: str) -> str:
     return "\n".join(wrapped(typeset(words), LINE_CHARACTERS))
 
 
-def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) -> None:
+def write_beside(
+    axes: "Axes", labels: Sequence[tuple[float, float, str, str]], all_or_none: bool = False
+) -> None:
     """Write words at points (x, y, words, colour) if they cover no other words and no lines there.
 
-    No words are nearer to another point than to their own. Nothing may change the size of the axes
-    afterwards.
+    No words are nearer to another point than to their own. With ``all_or_none``, no words are written if some
+    cannot be. Nothing may change the size of the axes afterwards.
     """
     figure: Any = axes.figure
     if labels:
         figure.draw_without_rendering()
     paths, boxes = [*_drawn(axes)], [text.get_window_extent() for text in axes.texts]
     edge, anchors = axes.bbox.padded(3), [axes.transData.transform(label[:2]) for label in labels]
+    before = len(boxes)
     for (x, y, words, colour), anchor in zip(labels, anchors, strict=True):
         for right, up, by in BESIDE:
             look: Any = {"ha": ALIGNED[right][0], "va": ALIGNED[up][1], "color": colour}
@@ -159,6 +171,9 @@ def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) 
                 boxes.append(box)
                 break
             text.remove()
+    if all_or_none and len(boxes) < before + len(labels):
+        for written in axes.texts[before:]:
+            written.remove()
 
 
 def _drawn(axes: "Axes") -> Iterator["MatplotlibPath"]:

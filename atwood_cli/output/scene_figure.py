@@ -7,7 +7,7 @@ on the left, where the string of m1 hangs down, and runs clockwise over the top.
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import pi, radians, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,8 +17,8 @@ from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..solver import arc
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
-from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_file, page, typeset, write_beside
-from .text import inputs_in_words
+from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_picture, page, typeset, write_beside
+from .text import Picture, inputs_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,12 +37,9 @@ BETWEEN_WEIGHTS = 18  # characters for which there is room
 ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the axle, and a length
 
 
-def save_scene(answers: Answers, path: str, force: bool, bare: bool, curves: bool = False) -> None:
-    """Draw the machine to a file, whose suffix is its format, and with ``curves`` the forces along the arc.
-
-    ``bare`` leaves out all sentences except on how it is drawn. Raises SceneError, OSError.
-    """
-    check_file(path, force)
+def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None:
+    """Draw the machine, and with ``curves`` the forces along the arc. Raises SceneError, OSError."""
+    check_picture(picture)
     kind = kind_of(answers.decided) if answers.decided.light else None  # else an end is fixed to the pulley
     answers = answers.rounded_to(min(answers.digits or SHOWN_DIGITS, SHOWN_DIGITS))
     decided = answers.decided
@@ -57,27 +54,34 @@ def save_scene(answers: Answers, path: str, force: bool, bare: bool, curves: boo
     wrap = float(doubles.settle(lambda m: decided.scene.wrap.degrees(m.ar)))
     if not (LEAST <= least <= max(forces.values()) <= MOST_FORCE and LEAST <= wrap <= MOST_WRAP):
         rule = f"draws forces from {LEAST} to {MOST_FORCE} N and wraps from {LEAST} to {MOST_WRAP}° only"
-        raise SceneError("figure", path, rule)
+        raise SceneError("figure", picture.file, rule)
     if not decided.ends_hang_down:
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
     scale = LONGEST / (max(forces.values()) or 1)
     lengths = {name: max(scale * force, SHORTEST) if force else 0.0 for name, force in forces.items()}
     below = [*_caption(answers, kind, wrap)]
+    arrows = _arrows_on_arc(answers, kind, radians(wrap)) if kind else None
+    if arrows and (friction := abs(arrows.friction).max()):
+        below.append(
+            f"Arrows of friction are {arrows.normal.max() / friction:.3g} times as long as to scale."
+        )
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
     given = inputs_in_words(decided.scene, answers.uncertain)
     above = [", ".join(given.values()), unmarked(verdict(answers))]
     panels = 2 if curves else 1
-    with page(path, force, above, " ".join(below), bare, panels=panels) as figure:
+    with page(picture, above, " ".join(below), panels) as figure:
         machine, *more = figure.subplots(panels, height_ratios=[1.6, 1][:panels], squeeze=False).flat
         machine.axis("off")
         machine.set_aspect("equal", adjustable="datalim")
         machine.margins(0.01)
         _draw_pulley(machine, answers, radians(wrap))
-        if kind:
-            _draw_contact(machine, answers, kind, radians(wrap), "--" if curves else "-")
+        if kind and arrows:
+            _draw_contact(machine, arrows, "--" if curves else "-")
             for axes in more:
                 _draw_curves(axes, answers, kind, wrap)
+                if picture.symbols:
+                    axes.tick_params(labelbottom=False, labelleft=False)
         if decided.ends_hang_down:
             _draw_masses(machine, answers, lengths)
         else:
@@ -90,7 +94,7 @@ def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterato
         why = ", as on a slightly elastic string"
         if answers["friction_force_max"] is not None:
             greatest, least = (format_number(answers[f"friction_force_{edge}"]) for edge in ("max", "min"))
-            why = f". Its vector sum is friction_force_max, {greatest} N; friction_force_min is {least} N"
+            why = f". Its vector sum is the greatest that is possible, {greatest} N; the least is {least} N"
         angle = format_number(answers["least_wrap"])
         yield f"Drawn: friction at its limit on the {angle}° of the arc next to the heavier mass{why}."
     elif kind:
@@ -135,7 +139,7 @@ def _draw_pulley(axes: "Axes", answers: Answers, phi: float) -> None:
         _draw_arc(axes, ROTATION_AT * above, PURPLE, "white")
     if friction := _axle_friction(answers):
         _draw_arc(axes, AXLE_AT * above.conj(), ORANGE, ORANGE)
-        axes.text(0, -0.42, f"f_axle = {friction} N", ha="center", va="center", size=8, color=ORANGE)
+        axes.text(0, -0.42, f"axle friction\n= {friction} N", ha="center", va="center", size=8, color=ORANGE)
 
 
 def _draw_arc(axes: "Axes", path: Any, colour: str, head: str) -> None:
@@ -170,23 +174,36 @@ def _number(value: Any, answers: Answers | None = None) -> str:
     return typeset(format_number(strip_zeros(answers.round(value)) if answers else value))
 
 
-def _draw_contact(axes: "Axes", answers: Answers, kind: arc.Profile, phi: float, dash: str) -> None:
-    """Draw the arrows of normal force and friction over the turn at the heavier mass, with a legend."""
+class Arrows(NamedTuple):
+    """Normal force and friction (N per radian) at angles of the arc (radians)."""
+
+    angles: Any
+    normal: Any
+    friction: Any
+
+
+def _arrows_on_arc(answers: Answers, kind: arc.Profile, phi: float) -> Arrows:
+    """Return the forces that are drawn: those over the turn at the heavier mass."""
     drawn = min(1, TURN / phi)
     count = int(drawn * phi / BETWEEN_ARROWS + 1e-9)
     both = phi < TURN  # both ends of a turn are one place
     shares = np.linspace(0, drawn, count + both, endpoint=both) if count else np.array([drawn / 2])
     if answers.decided.sign >= 0:
         shares = 1 - shares
-    outwards, (normal, friction) = _rim(phi * shares), _forces(answers, kind, shares)
+    return Arrows(phi * shares, *_forces(answers, kind, shares))
+
+
+def _draw_contact(axes: "Axes", arrows: Arrows, dash: str) -> None:
+    """Draw the arrows of normal force and friction, with a legend."""
+    angles, normal, friction = arrows
+    outwards = _rim(angles)
     lengths = normal / normal.max() * LONGEST_ON_ARC
     _draw_arrows(axes, (NORMAL_AT + lengths) * outwards, -lengths * outwards, BLUE)
     axes.plot([], [], color=BLUE, marker=">", ms=4, label="normal force nR")
     if greatest := abs(friction).max():
-        around = friction / greatest * LONGEST_ON_ARC * 1j * np.exp(-1j * phi * shares)
+        around = friction / greatest * LONGEST_ON_ARC * 1j * np.exp(-1j * angles)
         _draw_arrows(axes, FRICTION_AT * outwards, around, RED)
-        label = f"friction fR (arrows {normal.max() / greatest:.3g} times as long as to scale)"
-        axes.plot([], [], color=RED, ls=dash, marker=">", ms=4, label=typeset(label))
+        axes.plot([], [], color=RED, ls=dash, marker=">", ms=4, label="friction fR")
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2, handlelength=3)
 
 

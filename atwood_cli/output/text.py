@@ -124,6 +124,15 @@ class Destination(NamedTuple):
     force: bool = False
 
 
+class Picture(NamedTuple):
+    """The file of a picture, and whether it is without a title, or has only symbols, without numbers."""
+
+    file: str
+    force: bool = False
+    bare: bool = False
+    symbols: bool = False
+
+
 def show(report: Report, target: Destination) -> Sequence[str]:
     """Print a result in a form, as bare values or as a page, whole or not at all. Raises OSError.
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..explain.messages import unmarked
 from ..numbers.digits import is_infinite
-from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
-from ..output.text import wrapped
+from ..output.figure import COLOURS, FAINT, INK, axis_words, check_picture, page, typeset, write_beside
+from ..output.text import Picture, wrapped
 from ..solver.answers import Answers
 from ..solver.quantities import QUANTITIES
 from ..solver.scene import Scene, SceneError
 from .changes import Change, changes
-from .ranges import Range, Sweep, steps
+from .ranges import LOCKED, Range, Sweep, steps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -128,25 +128,23 @@ def axis_title(names: Iterable[str], unit: str = "") -> str:
     symbols: dict[str, list[str]] = {}
     for words, symbol in map(axis_words, names):
         symbols.setdefault(words, []).append(symbol)
-    title = ", ".join(f"{words} {', '.join(of_words)}" for words, of_words in symbols.items())
+    title = ", ".join(f"{words} {', '.join(of_words)}".rstrip() for words, of_words in symbols.items())
     return f"{title} ({unit})" if unit else title
 
 
-def save_sweep(
-    sweep: Sweep, names: Sequence[str], digits: int | None, path: str, force: bool, bare: bool
-) -> None:
-    """Draw the curves of quantities, or of the acceleration, to a file; if bare, without a caption.
+def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: Picture) -> None:
+    """Draw the curves of quantities, or of the acceleration, to a file.
 
     Raises SceneError, OSError, and ArithmeticError if there is nothing to draw.
     """
     names = _drawable(sweep, names)
-    check_file(path, force)
+    check_picture(picture)
     along, panels = sweep.along, panels_of(sweep, names, digits)
     inputs = [words for name, words in sweep.inputs.items() if name != along.name]
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
     title = f"{axis_title(chain(*quantities))} against {axis_title([along.name])}"
     above = [title[0].upper() + title[1:], ", ".join(inputs)]
-    with page(path, force, above, bare=bare, panels=len(panels)) as figure:
+    with page(picture, above, panels=len(panels)) as figure:
         all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
         _set_places(all_axes[-1], along)
         for axes, curves, drawn in zip(all_axes, panels, quantities, strict=True):
@@ -163,14 +161,14 @@ def save_sweep(
                 axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), handlelength=3, labelspacing=0.3)
         first = panels[0][: len(panels[0]) // len(quantities[0])]
         labels = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
-        write_beside(all_axes[0], labels)
+        write_beside(all_axes[0], labels, all_or_none=True)
 
 
 def _set_places(axes: "Axes", along: Range) -> None:
     """Set the x axis; that of a list has its values at equal distances, upright if there is no room."""
     axes.set_xlabel(axis_title([along.name], along.unit))
     if along.is_list:
-        names = [typeset(along.cell(point)) for point in along.points]
+        names = ["locked" if point == LOCKED else typeset(along.cell(point)) for point in along.points]
         rotation = 90 if len("  ".join(names)) > TICK_CHARACTERS else 0
         axes.set_xticks(range(len(names)), names, rotation=rotation)
         return

@@ -9,7 +9,7 @@ from operator import attrgetter
 from ..numbers.digits import format_number
 from ..output.figure import BLUE, GREEN, PURPLE, RED, page
 from ..output.page import Page
-from ..output.text import VERSION
+from ..output.text import VERSION, Picture
 from .measure import EXACT_DIGITS, MOST_ROWS, SEED, SETTINGS, Measured
 
 LEGEND = (
@@ -53,11 +53,11 @@ def print_table(measured: Sequence[Measured], scenes: int) -> None:
     table.say(*LEGEND)
 
 
-def save(measured: Sequence[Measured], path: str, force: bool, bare: bool = False) -> None:
-    """Draw errors against times to a file, for each family, without a title if bare. Raises OSError."""
+def save(measured: Sequence[Measured], picture: Picture) -> None:
+    """Draw errors against times to a file, for each family. Raises OSError."""
     families = {family: [*group] for family, group in groupby(measured, attrgetter("family"))}
     title = "Worst error of a scene, in units in the last place of a double (ulp), against its time"
-    with page(path, force, [title], bare=bare) as figure:
+    with page(picture, [title]) as figure:
         panels = figure.subplots(1, len(families), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (family, settings) in zip(panels, families.items(), strict=True):
             axes.set(title=family, xscale="log", yscale="log", xmargin=0.2)
