@@ -37,8 +37,8 @@ REMARKS = {
 
 
 def flag(name: str) -> str:
-    """Return a name as an option is typed: mu_k is --mu-k."""
-    return f"--{name.rstrip('_').replace('_', '-')}"
+    """Return a name as an option is typed: mu_k is --mu-k. An argument is typed without a name."""
+    return name if name == "NAME" else f"--{name.rstrip('_').replace('_', '-')}"
 
 
 def option(group: str, *flags: str, words: Callable[[], Mapping[str, str]] | None = None, **more: Any) -> Any:
@@ -168,6 +168,10 @@ FIGURE: dict[str, Any] = {
         bool, option("Files", "--symbols", help="With --figure: symbols to fill in, and no numbers.")
     ],
 }
+Expect = Annotated[
+    list[str] | None,
+    option("Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."),
+]
 Labels = Annotated[
     list[str] | None,
     option(

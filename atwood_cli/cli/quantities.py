@@ -1,6 +1,13 @@
 """`atwood quantities`: the quantities that can be asked for by name."""
 
-from ..output.text import VERSION, Destination, Report, show
+import sys
+from shutil import get_terminal_size
+from typing import Annotated
+
+import typer
+
+from ..output.text import VERSION, Destination, Report, say, show
+from ..reading.names import read_names
 from ..solver.quantities import QUANTITIES, REGIMES
 from .options import DONE, OUTPUT, with_options
 
@@ -9,6 +16,7 @@ HELP = """List the quantities: symbols, units, meanings, equations.
 \b
 Examples:
   atwood quantities
+  atwood quantities mu_verge a
   atwood quantities --json
 """
 ON_FRICTION = (
@@ -19,14 +27,25 @@ ON_FRICTION = (
 )
 
 
+Names = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="[NAME]...", rich_help_panel="Output", help="Only these quantities.", show_default=False
+    ),
+]
+
+
 @with_options(OUTPUT)
-def quantities(target: Destination) -> int:
+def quantities(target: Destination, names: Names = None) -> int:
     """Run the command."""
     columns = ("name", "symbol", "unit", "meaning", "equation")
     rows = [("regime", "", "", f"what the string does: {', '.join(REGIMES)}", "")]
     rows += [
         (name, *(getattr(about, column) for column in columns[1:])) for name, about in QUANTITIES.items()
     ]
+    if names:
+        wanted = read_names("NAME", names, ("regime", *QUANTITIES))
+        rows = [row for row in rows if row[0] in wanted]
     records = [dict(zip(columns, row, strict=True)) for row in rows]
 
     def print_page() -> None:
@@ -34,7 +53,10 @@ def quantities(target: Destination) -> int:
 
         page = Page()
         page.table([column.capitalize() for column in columns], [rows])
-        page.say(ON_FRICTION)
+        if not names:
+            page.say(ON_FRICTION)
 
     show(Report(lambda: {"version": VERSION, "quantities": records}, lambda: records, print_page), target)
+    if sys.stdout.isatty() and not (names or any(target)) and get_terminal_size().lines < len(rows):
+        say("name those that you want to see, as atwood quantities mu_verge a; or add | less")
     return DONE

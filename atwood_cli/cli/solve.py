@@ -19,6 +19,7 @@ from .options import (
     OUTPUT,
     SCENE,
     Digits,
+    Expect,
     option,
     quantity_meanings,
     scene_option,
@@ -42,10 +43,6 @@ Find = Annotated[
         words=lambda: {name: INPUTS[name].meaning for name in FINDABLE},
         help="What the motion finds: m1, m2, M, g, mu_k or axle.",
     ),
-]
-Expect = Annotated[
-    list[str] | None,
-    option("Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."),
 ]
 HELP = """Solve one scene: acceleration, tensions, friction.
 

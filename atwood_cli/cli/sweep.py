@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from functools import partial
 
+from ..explain.conditions import read_condition
 from ..numbers.text import counted
 from ..output.text import Destination, Picture, Report, say, show
 from ..reading.inputs import read_digits
@@ -10,7 +11,7 @@ from ..reading.names import read_names
 from ..sweep.ranges import read_sweep
 from ..sweep.sweep_figure import save_sweep
 from ..sweep.sweep_page import SweepPage
-from .options import COULD_NOT, DONE, FIGURE, OUTPUT, SCENE, Columns, Digits, with_options
+from .options import COULD_NOT, DONE, FIGURE, OUTPUT, SCENE, Columns, Digits, Expect, with_options
 
 HELP = """Solve a range or a list of scenes.
 
@@ -22,6 +23,7 @@ Examples:
   atwood sweep --m1 1 --m2 3 --M 1:1000:4:log --mu 0.2:0.4:3 --only regime
   atwood sweep --m1 100g:500g:5 --m2 300g --M 50g --csv
   atwood sweep --m1 1 --m2 3 --M 0,1,10,inf --inertia disk,hoop
+  atwood sweep --m1 1 --m2 3 --M 0:40:5 --mu 0.3 --expect no-slip
   atwood sweep --m1 1 --m2 3 --M 0:60:61 --only T1,T2 --figure t.svg
 
 --figure draws, in place of the table, what --only names, or the acceleration, with one pair of axes for each
@@ -36,14 +38,15 @@ def sweep(
     picture: Picture | None,
     *,
     only: Columns = None,
+    expect: Expect = None,
     digits: Digits = None,
 ) -> int:
     names = list(dict.fromkeys(read_names("only", only or [])))
-    precision = read_digits(digits)
+    precision, conditions = read_digits(digits), [*map(read_condition, expect or [])]
     swept = read_sweep(given, precision)
     if picture is not None:
         save_sweep(swept, names, precision, picture)
-    swept_page = SweepPage(swept, names, precision)
+    swept_page = SweepPage(swept, names, precision, conditions)
     try:
         # What is drawn is not printed, too, but to a file that is asked for.
         page = partial(swept_page.page, table=picture is None or target.file is not None)
@@ -53,4 +56,6 @@ def sweep(
             say(f"stopped after {swept_page.done} of {counted(swept.total, 'row')}")
         raise
     say(*aside or [f"{name} has no value in any row" for name in names if name in swept_page.missing])
-    return COULD_NOT if swept_page.missing else DONE
+    if swept_page.failures:
+        say(*swept_page.failures.values(), f"{swept_page.failed} of {counted(swept.total, 'row')} failed")
+    return COULD_NOT if swept_page.missing or swept_page.failures else DONE

@@ -16,11 +16,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import escape
 
-from ..numbers.text import LONGEST_NAME, shortened
 from ..solver.quantities import QUANTITIES
 from ..solver.scene import INPUTS, SceneError
 from .files import check_free, written_beside
-from .text import Picture, say, wrapped
+from .text import Picture, say_written, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -120,7 +119,7 @@ def page(picture: Picture, above: Sequence[str], below: str = "", panels: int = 
             described = f"</title>\n<desc>{escape(description)}</desc>"
             content = content.replace(b"</title>", described.encode(), 1)
         beside.write_bytes(content)
-    say(f"wrote {shortened(picture.file, LONGEST_NAME)}")
+    say_written(picture.file)
 
 
 def _leave_symbols(figure: "Figure") -> None:

@@ -11,6 +11,7 @@ from math import inf
 from typing import Any, NamedTuple, TextIO
 
 from ..numbers.digits import Rounding, as_typed, exact_or_rounded, format_number, is_infinite, to_double
+from ..numbers.text import LONGEST_NAME, shortened
 from ..solver.scene import INPUTS, MEASURED, Scene, parameter_of, with_unit
 from .files import Stdout, printable, stdout_into
 
@@ -25,6 +26,10 @@ def say(*messages: str) -> None:
             line = "\n".join(wrapped(line, get_terminal_size().columns))
         with suppress(OSError):  # there is nobody else to tell
             print(line, file=sys.stderr)
+
+
+def say_written(file: str) -> None:
+    say(f"wrote {shortened(file, LONGEST_NAME)}")
 
 
 A_UNIT = r"kg|g|m/s²|rad/s²|m/s\^2|m|[mnµ]?s|m?Nm?|ulp"
@@ -150,6 +155,8 @@ def show(report: Report, target: Destination) -> Sequence[str]:
         else:
             report.page()
         sys.stdout.flush()
+    if target.file is not None:
+        say_written(target.file)
     return report.notes() if report.bare or (form and not form.has_notes) else ()
 
 

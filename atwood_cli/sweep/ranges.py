@@ -14,6 +14,7 @@ from math import inf, prod
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+from ..explain.conditions import Condition, failure
 from ..numbers.digits import (
     DOUBLE_DIGITS,
     SHOWN_DIGITS,
@@ -169,13 +170,14 @@ class Sweep(NamedTuple):
 
 
 class Row(NamedTuple):
-    """The regime, the values asked for, and why some are missing, at a point."""
+    """The regime, the values asked for, why some are missing, and what fails that is expected, at a point."""
 
     at: dict[str, Point]
     regime: str
     mu_assumed: bool
     values: dict[str, object]
     reasons: dict[str, str]
+    failures: dict[str, str]
 
 
 def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sweep:
@@ -319,10 +321,13 @@ def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequen
         raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
 
 
-def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[Row]:
+def solve_rows(
+    sweep: Sweep, names: Sequence[str], digits: int | None, conditions: Sequence[Condition] = ()
+) -> Iterator[Row]:
     """Yield the quantities named at every point, each point solved by itself."""
     for scene, place in sweep.scenes(sweep.ranges):
         answers = Answers(scene, digits)
         reasons = {name: reason for name in names if (reason := answers.answer(name).reason)}
         decided, values = answers.decided, {name: answers[name] for name in names}
-        yield Row(place, decided.regime, decided.mu_assumed, values, reasons)
+        failures = {x.typed: why for x in conditions if (why := failure(answers, x))}
+        yield Row(place, decided.regime, decided.mu_assumed, values, reasons, failures)

@@ -7,6 +7,7 @@ from contextlib import nullcontext
 from fractions import Fraction
 from itertools import groupby
 
+from ..explain.conditions import Condition
 from ..explain.messages import reasons_in
 from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
 from ..output.page import Page, aligned, progress
@@ -21,8 +22,13 @@ from .sweep_figure import MAX_CURVES
 class SweepPage:
     """A sweep as a page, JSON and CSV. Rows of JSON and CSV are written as they come."""
 
-    def __init__(self, sweep: Sweep, names: Sequence[str], digits: int | None) -> None:
-        self.sweep, self.digits = sweep, digits
+    def __init__(
+        self, sweep: Sweep, names: Sequence[str], digits: int | None, conditions: Sequence[Condition] = ()
+    ) -> None:
+        self.sweep, self.digits, self.conditions = sweep, digits, conditions
+        self.failures: dict[str, str] = {}
+        """What is expected and fails, with the first row in which it does."""
+        self.failed = 0
         self.asked = set(names)
         self.missing = set(names)
         """The quantities that were asked for and that no row has."""
@@ -36,12 +42,15 @@ class SweepPage:
 
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
         """Yield the rows, and count the reasons for missing values."""
-        rows = solve_rows(self.sweep, names, digits)
+        rows = solve_rows(self.sweep, names, digits, self.conditions)
         with progress(rows, self.sweep.total, rows=lambda row: 1) if watch else nullcontext(rows) as rows:
             for row in rows:
                 self.reasons.update(row.reasons.items())
                 self.assumed = [ASSUMED] if row.mu_assumed else self.assumed
                 self.missing = {name for name in self.missing if not cell(row.values[name])}
+                self.failed += bool(row.failures)
+                for typed, why in row.failures.items():
+                    self.failures.setdefault(typed, f"at {self.sweep.in_words(row.at)}: {why}")
                 yield row
                 self.done += 1
 
