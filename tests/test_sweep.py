@@ -165,7 +165,8 @@ def test_a_file_gets_what_a_pipe_would(tmp_path: Path, typed: str) -> None:
         for way in FORMS[form]:
             name, *more = way.split()
             ran = called([*words, "-o", f"{tmp_path}/{name}", *more], on_terminal=True, **poor)
-            assert (ran.status, plain(ran.out).split()) == (printed.status, printed.err.split())
+            said = f"atwood: wrote {tmp_path}/{name} {printed.err}".split()
+            assert (ran.status, plain(ran.out).split()) == (printed.status, said)
             (file,) = tmp_path.iterdir()
             assert (file.name, file.read_bytes().decode()) == (name, printed.out)
             file.unlink()

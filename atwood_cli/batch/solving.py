@@ -11,13 +11,15 @@ from math import inf, isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
+from ..explain.conditions import Condition, failure
 from ..explain.messages import reasons_in
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import OTHER_NAMES, read_plain, read_scene, read_value
 from ..reading.units import Malformed, read_unit
+from ..solver.answers import Answers
 from ..solver.quantities import NAMES, REGIMES
-from ..solver.scene import INPUTS, MASSES, SceneError, parameter_of
+from ..solver.scene import INPUTS, MASSES, Scene, SceneError, parameter_of
 from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
 from ..tables.sources import Unreadable
 
@@ -33,11 +35,15 @@ LONG_CELL = 100
 
 
 class Wanted(NamedTuple):
-    """The quantities wanted of a table, its columns that hold no input, and the inputs by other headings."""
+    """The quantities wanted of a table, its columns that hold no input, and the inputs by other headings.
+
+    ``conditions`` are expected to hold in each row.
+    """
 
     names: Sequence[str]
     labels: Collection[str] = ()
     named: Mapping[str, str] = {}
+    conditions: Sequence[Condition] = ()
 
 
 class ReadColumns(NamedTuple):
@@ -112,6 +118,15 @@ class Tally:
     first_error: str = ""
     beyond: int = 0
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
+    failures: dict[str, str] = field(default_factory=dict)
+    """What is expected and fails, with the first row in which it does."""
+    failed: int = 0
+
+    def fail(self, row: int, failures: Mapping[str, str]) -> None:
+        """Count one of the next rows by what fails in it."""
+        self.failed += bool(failures)
+        for typed, why in failures.items():
+            self.failures.setdefault(typed, f"in row {self.rows + row + 1}: {why}")
 
     def add(self, results: "pl.DataFrame", regimes: "pl.Series") -> None:
         """Count the next rows by their results."""
@@ -133,7 +148,9 @@ class Tally:
         said = [f"{counted(self.rows, 'row')}: {'; '.join(counts)}."]
         ranked = sorted(self.reasons.items(), key=lambda item: (-item[1], NAMES.index(item[0][0])))
         said += reasons_in(dict(ranked), self.rows)
-        return [*said, *([f"first error, in {self.first_error}"] if self.errors else [])]
+        said += [f"first error, in {self.first_error}"] if self.errors else []
+        failed = f"{self.failed} of {counted(self.rows, 'row')} failed"
+        return [*said, *self.failures.values(), *([failed] if self.failed else [])]
 
 
 def solve_cells(
@@ -170,6 +187,10 @@ def solve_cells(
     error = pl.repeat(None, cells.height, dtype=pl.String, eager=True)
     error = error.scatter(list(errors), list(errors.values()))
     results = values.select(*wanted.names, error.alias(ERROR))
+    failures = cache(partial(_failures, columns, wanted.conditions))
+    for row, given_cells in enumerate(cells.iter_rows() if wanted.conditions else ()):
+        if row not in errors:
+            tally.fail(row, failures(given_cells))
     tally.beyond += beyond
     tally.reasons.update({key: count for key, count in reasons.items() if key[0] in wanted.names})
     tally.add(results, values["regime"])
@@ -248,6 +269,21 @@ def _double(heading: Heading, cell: str | float, comma: bool) -> float:
 
 def _why(columns: ReadColumns, row: Sequence[Any]) -> str:
     """Return the error of a row, in the words of `solve`. It quotes numbers as they were typed."""
+    try:
+        _scene_of(columns, row)
+    except SceneError as error:
+        return str(error)
+    return "this row cannot be solved"
+
+
+def _failures(columns: ReadColumns, conditions: Sequence[Condition], row: Sequence[Any]) -> Mapping[str, str]:
+    """Return what is expected of a row and fails, decided as `solve` does, with what holds instead."""
+    answers = Answers(_scene_of(columns, row))
+    return {x.typed: why for x in conditions if (why := failure(answers, x))}
+
+
+def _scene_of(columns: ReadColumns, row: Sequence[Any]) -> Scene:
+    """Read a row as `solve` does. Raises SceneError."""
     cells: dict[str, Any] = {}
     for heading, cell in zip(columns.headings, row, strict=True):
         text = pointed(heading.name, cell, columns.comma) if isinstance(cell, str) else cell
@@ -256,8 +292,4 @@ def _why(columns: ReadColumns, row: Sequence[Any]) -> str:
         if heading.unit and str(text).lower() != "inf":
             text = f"{text}{heading.unit}"
         cells[heading.name] = text if isinstance(text, str) else float(text)
-    try:
-        read_scene(cells)
-    except SceneError as error:
-        return str(error)
-    return "this row cannot be solved"
+    return read_scene(cells)

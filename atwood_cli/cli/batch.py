@@ -4,13 +4,14 @@ from typing import Annotated
 
 import typer
 
+from ..explain.conditions import read_condition
 from ..numbers.text import counted
 from ..output.text import say
 from ..reading.names import read_names
 from ..solver.quantities import STANDARD
 from ..solver.scene import INPUTS, SceneError
 from ..tables.sources import FORMATS, check_format, read_format
-from .options import COULD_NOT, DONE, Columns, Force, Labels, option
+from .options import COULD_NOT, DONE, Columns, Expect, Force, Labels, option
 
 Table = Annotated[
     str,
@@ -78,6 +79,7 @@ def batch(
     ] = None,
     label: Labels = None,
     only: Columns = None,
+    expect: Expect = None,
     allow_errors: Annotated[
         bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")
     ] = False,
@@ -92,7 +94,9 @@ def batch(
     check_format(output, kind)
     if force and output == "-":
         raise SceneError("force", None, "needs --output")
-    job = Job(table, kind, output, force, Wanted(names, label or (), read_named(column or (), VOCABULARY)))
+    conditions = [*map(read_condition, expect or [])]
+    wanted = Wanted(names, label or (), read_named(column or (), VOCABULARY), conditions)
+    job = Job(table, kind, output, force, wanted)
     tally = Tally(set(names))
     try:
         remarks = run_batch(job, tally)
@@ -102,4 +106,4 @@ def batch(
         raise
     say(*remarks, *tally.lines())
     missing = only and tally.missing and tally.rows > tally.errors
-    return COULD_NOT if missing or (tally.errors and not allow_errors) else DONE
+    return COULD_NOT if missing or tally.failed or (tally.errors and not allow_errors) else DONE

@@ -224,10 +224,10 @@ def refused(column: str, why: str, way: str = "") -> Unreadable:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Return headings in a sentence, the first of many."""
+    """Return headings in a sentence, the first of many; none if there are none."""
     most = 12
     more = f" and {len(names) - most} more" if len(names) > most else ""
-    return f"{', '.join(map(in_quotes, names[:most]))}{more}"
+    return f"{', '.join(map(in_quotes, names[:most])) or 'none'}{more}"
 
 
 def read_as(

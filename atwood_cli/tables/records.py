@@ -259,8 +259,12 @@ def _no_number(word: str) -> str:
     raise ValueError(f"{word} is not a number in JSON; write null for what is not given")
 
 
+class _Number(str):
+    """A number of JSON, as it stands."""
+
+
 _DECODER = json.JSONDecoder(
-    object_pairs_hook=_members, parse_float=str, parse_int=str, parse_constant=_no_number
+    object_pairs_hook=_members, parse_float=_Number, parse_int=_Number, parse_constant=_no_number
 )
 _COMPACT = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"))
 
@@ -269,5 +273,19 @@ def _text(value: object) -> str | None:
     """Return a value as a cell, one that is neither a text nor null as JSON."""
     if value is None:
         return None
-    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    text = value if isinstance(value, str) else _in_json(value)
     return text.encode(errors="backslashreplace").decode()  # UTF-8 has no halves of surrogate pairs
+
+
+def _in_json(value: object) -> str:
+    """Return a value as JSON, in which numbers stand as they were read."""
+    match value:
+        case _Number():
+            return value
+        case list():
+            return f"[{','.join(map(_in_json, value))}]"
+        case dict():
+            return (
+                f"{{{','.join(f'{_COMPACT.encode(key)}:{_in_json(item)}' for key, item in value.items())}}}"
+            )
+    return _COMPACT.encode(value)
