@@ -285,7 +285,6 @@ def _in_json(value: object) -> str:
         case list():
             return f"[{','.join(map(_in_json, value))}]"
         case dict():
-            return (
-                f"{{{','.join(f'{_COMPACT.encode(key)}:{_in_json(item)}' for key, item in value.items())}}}"
-            )
+            members = (f"{_COMPACT.encode(key)}:{_in_json(item)}" for key, item in value.items())
+            return f"{{{','.join(members)}}}"
     return _COMPACT.encode(value)
