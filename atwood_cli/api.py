@@ -233,7 +233,7 @@ def solve(
         hint = f"; did you mean {meant}?" if meant else nearest(name, Inputs.__annotations__)
         raise TypeError(f"solve() got an unexpected keyword argument {name!r}{hint}")
     inputs: dict[str, Any] = {"m1": m1, "m2": m2, **given}
-    return Solution(read_answers(inputs, read_digits(digits), inputs.pop("find", None)))
+    return Solution(read_answers(inputs, read_digits(digits)))
 
 
 _masses = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD, default=None) for name in ("m1", "m2")]

@@ -21,7 +21,7 @@ from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES, QUANTITIES
-from atwood_cli.solver.scene import INPUTS, Scene
+from atwood_cli.solver.scene import INPUTS, MASSES, Scene
 
 from .conftest import examples, many
 from .tools import oracle
@@ -160,7 +160,7 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     mp.mp.dps = 60
     decided = read_answers(SCENES[kind], None).decided
     scene, motion, wrap = decided.scene, decided.motion, exact(decided.scene.wrap.number)
-    names = {"mu": "μ", "mu_k": "μ_k", "drop": "s", "time": "t"}
+    names = {"mu": "μ", "mu_k": "μ_k", "drop": "s", "time": "t", "speed": "v"}
     given = {x: getattr(scene, x) for x in INPUTS} | motion._asdict()
     known = {names.get(name, name): q for name, q in given.items() if q is not None}
     known |= {
@@ -169,7 +169,9 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
         "β": decided.beta,
         "b": decided.axle_mass,
     }
-    known |= {"f_axle": decided.axle_friction, "τ_axle": scene.number_of("axle")}
+    known |= {"f_axle": decided.axle_friction}
+    for x, (number, terms) in scene.terms:
+        known[f"{terms.symbol}{x[1:] if x in MASSES else ''}"] = number * (decided.sign if x == "a" else 1)
     env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}
     env |= {"π": +mp.pi, "φ": wrap if scene.wrap.unit == "rad" else mp.radians(wrap), "|a|": abs(env["a"])}
     if scene.mu == 0 or scene.mu_k == 0:
@@ -274,7 +276,7 @@ def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str) -> None:
 
 
 MATHEMATICS = """
-frac sqrt ln sin cdot times approx begin end mathrm qquad ast infty min max mu pi varphi theta alpha beta tau circ
+frac sqrt ln sin cdot times approx begin end mathrm qquad ast infty min max mu pi varphi theta alpha beta tau omega circ
 """
 IN_MATHEMATICS = re.compile(r"\$\$.*?\$\$|\$.*?\$", re.DOTALL)
 

@@ -86,8 +86,8 @@ def solve(
 ) -> int:
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     conditions = [read_condition(typed) for typed in expect or []]
-    measured = {"a": a, "drop": drop, "time": time, "speed": speed}
-    answers = read_answers({**given, **measured}, read_digits(digits), find)
+    measured = {"a": a, "drop": drop, "time": time, "speed": speed, "find": find}
+    answers = read_answers({**given, **measured}, read_digits(digits))
     if budget and not answers.uncertain:
         raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
     if explain and answers.uncertain:

@@ -100,7 +100,9 @@ class Derivation:
         """Return what is given or found, by symbol."""
         decided, scene, motion = self.decided, self.scene, self.decided.motion
         terms = {
-            f"{given.terms.symbol}{x[1:] if x in MASSES else ''}": abs(given.number)
+            f"{given.terms.symbol}{x[1:] if x in MASSES else ''}": given.number * decided.sign
+            if x == "a"
+            else abs(given.number)
             for x, given in scene.terms
         }
         return {

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from ..solver.answers import Answers
-from ..solver.scene import FINDABLE, INPUTS, MEASURED, Given, Scene
+from ..solver.scene import FINDABLE, INPUTS, MEASURED, Scene
 from .inputs import OTHER_NAMES, read_input
 from .names import read_name
 
 
-def read_answers(given: Mapping[str, Given | None], digits: int | None, find: str | None = None) -> Answers:
-    """Read the inputs, which may have uncertainties, and return the answers. Raises SceneError.
-
-    ``find`` names the input that a measured motion gives.
-    """
+def read_answers(given: Mapping[str, Any], digits: int | None) -> Answers:
+    """Read the inputs, which may have uncertainties, and what to find. Raises SceneError."""
     signed = ("drop", "speed")  # below 0 if m2 rises
     inputs = {name: read_input(name, given.get(name), name in signed) for name in (*INPUTS, *MEASURED)}
-    if not find and all(inputs[name].given is None for name in MEASURED):
+    find = given.get("find")
+    if find is None and all(inputs[name].given is None for name in MEASURED):
         scene = Scene.of(inputs)
     else:
         from ..solver.inverse import read_motion
 
         other_names = {name.replace("_", ""): meant for name, meant in OTHER_NAMES.items()}
-        find = find and read_name("find", find, FINDABLE, "input that a motion finds", other_names)
+        if find is not None:
+            find = read_name("find", str(find), FINDABLE, "input that a motion finds", other_names)
         scene = read_motion(inputs, find)
     uncertain = {name: read.uncertainty for name, read in inputs.items() if read.uncertainty}
     if not uncertain:

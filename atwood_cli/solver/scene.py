@@ -67,10 +67,6 @@ class Terms(NamedTuple):
         """Return the input from the number given."""
         return number / by if self.divided else number * by
 
-    def number(self, own: Any, by: Any) -> Any:
-        """Return the number that gives the input."""
-        return own * by if self.divided else own / by
-
 
 WEIGHT = Terms("a weight", "W", "force", "N", "g", divided=True)
 TORQUE = Terms("a torque", "τ_axle", "torque", "Nm", "R", divided=True)
@@ -277,12 +273,10 @@ class Motion(NamedTuple):
         drop, time, speed = (cast(Fraction, getattr(self, name)) for name in FALL)
         if drop is None:
             a = speed / time
+        elif time is None:
+            a = physics.acceleration_by_speed(drop, speed)
         else:
-            a = (
-                physics.acceleration_by_speed(drop, speed)
-                if time is None
-                else physics.acceleration_of_fall(drop, time)
-            )
+            a = physics.acceleration_of_fall(drop, time)
         return sign * self.direction * a if self.finds in MASSES else a
 
 
@@ -327,7 +321,7 @@ class Scene(NamedTuple):
     def in_terms_of(self, x: str, own: Any) -> Any:
         """Return a value of an input in the terms in which the input is given."""
         given = self.given_as(x)
-        return given.terms.number(own, getattr(self, given.terms.by)) if isinstance(given, InTerms) else own
+        return own / given.terms.own(1, getattr(self, given.terms.by)) if isinstance(given, InTerms) else own
 
     def with_number(self, x: str, number: Any) -> Scene:
         """Return the scene with another number for an input, or for what was measured, in the same unit.

@@ -83,6 +83,11 @@ nothing but the axle tells the motion | m2=0.3 mu=3 mu_k=2.5 axle=1e300
 finds the pulley | g=9 drop=9 time=3 R=0.1
 finds gravity | M=10 a=2
 finds gravity beside an axle | M=10 a=1 axle=0.9Nm R=0.1
+finds an axle that slows down | M=10 R=0.1 a=-0.2 find=axle
+finds the axle of equal masses | m2=1 M=2 a=0.02rad/s2 R=0.1 find=axle
+finds a weight's partner by speed and time | m2=20N M=1 R=0.1 speed=4rad/s time=2 m1=None
+finds the pulley by speed and height | m1=20N m2=3N drop=2 speed=1
+falls from rest | m1=3 m2=1 M=5N speed=2
 finds the heavier mass | m2=None M=10 g=9 a=2
 finds the lighter mass | m1=3 m2=None M=10 g=9 a=-1 axle=9
 finds an equal mass | m2=None M=10 a=0
