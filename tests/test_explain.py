@@ -177,7 +177,7 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     if scene.mu == 0 or scene.mu_k == 0:
         k, z = ("k", "z") if scene.mu == 0 else ("k_kin", "z_kin")
         env |= {k: mp.mpf(1), z: mp.mpf(0), "M*": mp.mpf(0)}
-    lighter, heavier = ("T2", "T1") if scene.m1 > scene.m2 else ("T1", "T2")
+    lighter, heavier = ("T2", "T1") if decided.sign < 0 else ("T1", "T2")
     found = told_of(kind, 50)
     for equation in equations(found):
         left = symbol_of(equation)

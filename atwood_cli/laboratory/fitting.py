@@ -142,6 +142,11 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
             if given.inputs[known].given is not None:
                 rule = f"conflicts with {known}, which gives it; leave one of them out"
                 raise SceneError("find", name, rule)
+    for x, (_, terms) in given.scene.terms if "gravity" in names else ():
+        if terms.by == "g":
+            raise SceneError(
+                x, given.inputs[x].given, f"is {terms.words}, and gravity is to be found; give it in kg"
+            )
     left = [x for x in USUAL if x not in names and x not in given.values]
     if names and left:
         what, give = (" and ".join(words[x] for x in left) for words in (RESULTS, GIVE))
