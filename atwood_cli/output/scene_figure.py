@@ -18,7 +18,7 @@ from ..solver import arc
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
 from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_picture, page, typeset, write_beside
-from .text import Picture, inputs_in_words
+from .text import Picture, in_unit_typed, inputs_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -157,7 +157,7 @@ def _pulley(answers: Answers) -> str:
     if scene.I is not None and scene.M is None:
         return f"I = {_number(scene.I, answers)} kg m²"
     mass = answers["critical_pulley_mass"] if decided.regime == "verge" else decided.pulley_mass
-    return "" if mass is None else f"M = {_number(mass, answers)} kg"
+    return "" if mass is None else f"M = {_mass(mass, answers)}"
 
 
 def _axle_friction(answers: Answers) -> str:
@@ -193,6 +193,12 @@ def _arrows_on_arc(answers: Answers, kind: arc.Profile, phi: float) -> Arrows:
     return Arrows(phi * shares, *_forces(answers, kind, shares))
 
 
+def _mass(mass: Any, answers: Answers) -> str:
+    """Return a mass with its unit, that in which it was typed."""
+    number, unit = in_unit_typed(mass)
+    return f"{_number(number, answers)} {unit or 'kg'}"
+
+
 def _draw_contact(axes: "Axes", arrows: Arrows, dash: str) -> None:
     """Draw the arrows of normal force and friction, with a legend."""
     angles, normal, friction = arrows
@@ -220,7 +226,7 @@ def _draw_masses(axes: "Axes", answers: Answers, lengths: Mapping[str, float]) -
         _draw_arrows(axes, [x + bottom * 1j], [-weight * 1j], GREEN)
         for away, height, words, colour in (
             (0.12, top + max(pull / 2, 0.17), f"T{end} = {_number(answers[f'tension_{end}'])} N", INK),
-            (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_number(mass, answers)} kg", INK),
+            (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_mass(mass, answers)}", INK),
             (
                 0.12,
                 bottom - max(weight / 2, 0.17),

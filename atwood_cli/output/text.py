@@ -11,6 +11,7 @@ from math import inf
 from typing import Any, NamedTuple, TextIO
 
 from ..numbers.digits import Rounding, as_typed, exact_or_rounded, format_number, is_infinite, to_double
+from ..numbers.rational import Typed
 from ..numbers.text import LONGEST_NAME, shortened
 from ..solver.scene import INPUTS, MEASURED, Scene, parameter_of, with_unit
 from .files import Stdout, printable, stdout_into
@@ -240,19 +241,30 @@ def _given(scene: Scene) -> dict[str, tuple[Any, str]]:
     }
 
 
+def in_unit_typed(value: Fraction) -> tuple[Fraction, str]:
+    """Return a number in the unit in which it was typed, and that unit; "" if this is the usual one."""
+    if isinstance(value, Typed) and value.in_unit:
+        return value / value.factor, value.in_unit.replace("2", "²")
+    return value, ""
+
+
 def inputs_in_words(scene: Scene, uncertain: Mapping[str, Fraction] = {}) -> dict[str, str]:
     """Say each input, as m1 = 1 kg, with at least as many decimals as its uncertainty: 3.00 ± 0.02."""
     parts = {}
     for name, (value, unit) in _given(scene).items():
-        words = as_typed(value) if isinstance(value, Fraction) else str(value)
+        words, typed_unit = str(value), ""
+        if isinstance(value, Fraction):
+            number, typed_unit = in_unit_typed(value)
+            words = getattr(value, "quotient", "") or as_typed(number)
         if name in uncertain:
-            u = as_typed(uncertain[name])
+            u = as_typed(uncertain[name] / getattr(value, "factor", 1))
             if not {"e", "/"} & {*words, *u}:
                 decimals = max(len(number.partition(".")[2]) for number in (words, u))
                 words = f"{Decimal(words):.{decimals}f}"
             words = f"{words} ± {u}"
         if isinstance(value, Fraction):
-            words = f"{words}{unit}" if unit else with_unit(words, parameter_of(name).unit)
+            unit = "" if typed_unit else unit
+            words = f"{words}{unit}" if unit else with_unit(words, typed_unit or parameter_of(name).unit)
         if value is not None:
             parts[name] = f"{name} = {words}"
     return parts

@@ -10,6 +10,7 @@ from math import inf
 from typing import NamedTuple
 
 from ..numbers.digits import as_typed, to_digits
+from ..numbers.rational import Typed
 from ..numbers.text import in_quotes, without_blanks
 from ..solver.scene import MULTIPLE_OF_G, STANDARD_GRAVITY, Parameter, Terms
 
@@ -53,6 +54,9 @@ MAX_DIGITS, MAX_EXPONENT = 1000, 500
 """The limits of a number, as it is typed and in SI units."""
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
+LONGEST_QUOTIENT = 30
+"""The most characters of a quotient that is shown as it was typed."""
+ONE = Fraction(1)
 _LARGEST = 10**MAX_MAGNITUDE
 TOO_LONG = f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits"
 
@@ -192,7 +196,7 @@ def _value_and_unit(text: str, dimension: str | None) -> tuple[Fraction, str]:
     number, unit = match.groups(default="")
     value = _quotient(number)
     if not unit:
-        return value, ""
+        return _typed(value, number), ""
     if dimension is None:
         raise Malformed(f"must be a plain number, without the {in_quotes(unit)}")
     factor = read_unit(unit, dimension)
@@ -203,7 +207,17 @@ def _value_and_unit(text: str, dimension: str | None) -> tuple[Fraction, str]:
         digits = re.sub("[^0-9]", "", as_typed(value, inf).partition("e")[0]).lstrip("0")
         exponent = _power(number) + to_digits(1, ROUND_FLOOR)(factor).adjusted()
         _check_size(len(digits), exponent, ", its unit included")
-    return value, symbol_of(unit)
+    return _typed(value, number, symbol_of(unit), factor), symbol_of(unit)
+
+
+def _typed(value: Fraction, number: str, unit: str = "", factor: Fraction = ONE) -> Fraction:
+    """Return a number, which remembers how it was typed if that differs from what it is in SI units."""
+    if "/" not in number and factor == 1:
+        return value
+    typed = Typed(value)
+    typed.quotient = number if "/" in number and len(number) <= LONGEST_QUOTIENT else ""
+    typed.in_unit, typed.factor = unit, factor
+    return typed
 
 
 def _quotient(text: str) -> Fraction:

@@ -273,7 +273,10 @@ def _text(value: object) -> str | None:
     """Return a value as a cell, one that is neither a text nor null as JSON."""
     if value is None:
         return None
-    text = value if isinstance(value, str) else _in_json(value)
+    try:
+        text = value if isinstance(value, str) else _in_json(value)
+    except RecursionError:
+        text = "[...]"
     return text.encode(errors="backslashreplace").decode()  # UTF-8 has no halves of surrogate pairs
 
 

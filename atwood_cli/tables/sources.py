@@ -108,9 +108,10 @@ def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
         try:
             block = read(BLOCK_BYTES)
         except (OSError, EOFError, zlib.error) as error:
-            is_none = isinstance(error, gzip.BadGzipFile)
-            why = "it is not compressed, though its name ends in .gz" if is_none else str(error)
-            raise Unreadable(getattr(error, "strerror", None) or why) from None
+            why = getattr(error, "strerror", None) or str(error)
+            if isinstance(error, gzip.BadGzipFile):
+                why = "it is not compressed, though its name ends in .gz"
+            raise Unreadable(why) from None
         if not block:
             return
         yield block
