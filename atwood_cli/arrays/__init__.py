@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..reading.names import read_name, read_quantities
-from ..solver.decisions import REGIME_ASSUMED, Decisions
+from ..solver.decisions import Decisions
 from ..solver.quantities import ACCURACIES, Accuracy
 from ..solver.scene import INPUTS, MASSES, MISSING_MASS, SceneError, Terms
 from .inputs import STATUSES as STATUSES
@@ -148,8 +148,9 @@ def _solve(
             level = len(LEVELS[rows.accuracy]) if group.beyond_window else 0
             row = partial(rows.number, select(group.rows, 0))
             inputs = dict(zip(INPUTS, group.pattern.inputs, strict=True))
-            if inputs["mu"] is None and Decisions(group.pattern.scene(row)).mu_assumed:
-                rows.reasons["regime", REGIME_ASSUMED] += size_of(group.rows)
+            if inputs["mu"] is None:
+                for assumption in Decisions(group.pattern.scene(row)).assumptions.items():
+                    rows.reasons[assumption] += size_of(group.rows)
             rows.solve(group.rows, Task(group.pattern, frozenset(), names, level))
             continue
         for name in names:

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 
 ZERO, ONE = Fraction(0), Fraction(1)
 REGIME_ASSUMED = "assumed, as mu is not given"
+MASSLESS_ASSUMED = "0, as M is not given and a massless pulley needs no friction; M = inf is a locked pulley"
 LimitingCase = Literal["as_given", "locked", "massless", "heaviest", "heaviest_at_rest", "lightest_at_rest"]
 
 
@@ -190,6 +191,14 @@ class Decisions:
         """The coefficient of friction at its limit: static on the verge, kinetic in slip; 0 if not given."""
         limit = self.scene.mu if self.limit_is_static else self.scene.mu_k
         return ZERO if limit is None else limit
+
+    @property
+    def assumptions(self) -> dict[str, str]:
+        """The quantities that depend on what is only assumed, and the assumption."""
+        is_massless = self.scene.mu is None and self.pulley_mass == 0 and self.scene.M is None
+        is_massless = is_massless and self.sign != 0 and self.tensions_equal and not self.one_mass_is_0
+        regime = {"regime": REGIME_ASSUMED} if self.mu_assumed else {}
+        return regime | ({"mu_verge": MASSLESS_ASSUMED} if is_massless else {})
 
     @property
     def mu_assumed(self) -> bool:
