@@ -2,6 +2,7 @@
 
 import inspect
 import os
+import shlex
 from collections.abc import Callable, Mapping
 from itertools import chain
 from operator import attrgetter
@@ -71,13 +72,14 @@ def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> 
 
 Command = Callable[..., int]
 FORM_NAMES = " ".join(FORMS)
+FOR_PROGRAMS = "json csv"
 NO_EFFECT = {
     **dict.fromkeys(FORMS, FORM_NAMES),
-    "explain": f"{FORM_NAMES} budget",
-    "all_": f"{FORM_NAMES} only explain",
+    "explain": f"{FOR_PROGRAMS} budget",
+    "all_": f"{FOR_PROGRAMS} only explain",
 }
 """By option, the others that cannot be used with it, in any command."""
-NEEDS = {"markdown": "explain", "bare": "figure", "symbols": "figure", "force": "output figure"}
+NEEDS = {"bare": "figure", "symbols": "figure", "force": "output figure"}
 """By option, the others of which it needs one, if the command has them."""
 
 
@@ -95,17 +97,19 @@ def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
     def taking(command: Command) -> Command:
         parameters = inspect.signature(command).parameters.values()
         own = [parameter for parameter in parameters if parameter.name not in ("given", "target", "picture")]
+        taken = {parameter.name for parameter in parameters}
 
         def run(**options: Any) -> int:
             _check(options)
-            read: dict[str, Any] = {}
-            if SCENE in groups:
-                read["given"] = {name: options[name] for name in INPUTS}
+            arguments = {parameter.name: options[parameter.name] for parameter in own}
+            if "given" in taken:
+                arguments["given"] = {name: options[name] for name in INPUTS}
+            if "target" in taken:
+                arguments["target"] = _read_target(options)
             if FIGURE in groups:
                 asked = [options[name] for name in ("figure", "force", "bare", "symbols")]
-                read["picture"] = None if asked[0] is None else Picture(*asked)
-            arguments = {parameter.name: options[parameter.name] for parameter in own}
-            return command(target=_read_target(options), **arguments, **read)
+                arguments["picture"] = None if asked[0] is None else Picture(*asked)
+            return command(**arguments)
 
         first, *others = ([_parameter(*named) for named in group.items()] for group in groups)
         seen = sorted([*first, *own, *chain(*others)], key=attrgetter("kind"))
@@ -172,6 +176,9 @@ Expect = Annotated[
     list[str] | None,
     option("Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."),
 ]
+SheetName = Annotated[
+    str | None, option("Files", "--sheet", metavar="NAME", help="Sheet of a workbook, if not the first.")
+]
 Labels = Annotated[
     list[str] | None,
     option(
@@ -201,7 +208,7 @@ def results(*forms: str) -> dict[str, Any]:
                 "--output",
                 "-o",
                 metavar="FILE",
-                help=f"Write to FILE, as its suffix says: {suffixes}, .txt.",
+                help=f"Write to FILE, by its suffix: {suffixes}, .txt.",
             ),
         ],
         "force": Force,
@@ -224,13 +231,16 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     if asked:
         forms = {FORMS[asked].suffix: asked}
     elif options.get("explain"):
-        forms = {".md" if options["markdown"] else ".txt": ""}
+        forms = {".txt": ""}
     else:
         forms = {".txt": "", **{FORMS[form].suffix: form for form in FORMS if form in options}}
     suffix = os.path.splitext(file)[1].lower()
     if suffix and suffix not in forms:
-        markdown = "; add --markdown for .md" if options.get("explain") and ".txt" in forms else ""
-        raise SceneError("output", file, f"must end in {' or '.join(forms)}{markdown}")
+        way = "; add --markdown for .md" if options.get("explain") and ".txt" in forms else ""
+        if suffix in (".tex", ".docx") and "markdown" in options:
+            md = shlex.quote(f"{os.path.splitext(file)[0]}.md")
+            way = f"; write {md} by --markdown, then run pandoc {md} -o {shlex.quote(file)}"
+        raise SceneError("output", file, f"must end in {' or '.join(forms)}{way}")
     return forms.get(suffix, asked)
 
 
@@ -247,7 +257,7 @@ def check_figure(picture: Picture | None) -> None:
 
 # Help
 
-BRIEF_COMMANDS = ("sweep", "contact")
+BRIEF_COMMANDS = ("sweep", "contact", "batch")
 """The commands whose help only names the options of a scene, which the help of solve explains."""
 LAST_GROUPS = ("Output", "Files")
 """The groups of options that come after a command's own groups."""

@@ -32,7 +32,7 @@ Only = Annotated[
         "Output",
         metavar="NAME",
         words=lambda: {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from measurements")},
-        help="Print only this, or several: a,T1; see atwood quantities.",
+        help="Print only this, or these: a,T1; see atwood quantities.",
     ),
 ]
 Find = Annotated[
@@ -80,9 +80,6 @@ def solve(
     explain: Annotated[
         bool, option("Output", "--explain", help="Show the derivation instead, with numbers put in.")
     ] = False,
-    markdown: Annotated[
-        bool, option("Output", "--markdown", help="With --explain: Markdown with LaTeX (-o FILE.md).")
-    ] = False,
 ) -> int:
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     conditions = [read_condition(typed) for typed in expect or []]
@@ -100,7 +97,7 @@ def solve(
     report = Report(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
-        page=lambda: print_steps(answers, names, markdown) if explain else print_table(answers, all_, budget),
+        page=lambda: print_steps(answers, names) if explain else print_table(answers, names or all_, budget),
         notes=lambda: notes_on_stderr(answers, names, values=not target.form),
         bare=[] if explain else values,
         below=lambda: print_budget(answers, names) if budget else None,

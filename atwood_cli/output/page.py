@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from ..numbers.text import counted
 from .files import printable
-from .text import wrapped
+from .text import IN_MARKDOWN, markdown_table, wrapped
 
 Part = TypeVar("Part")
 Groups = Sequence[Sequence[Sequence[str]]]
@@ -40,6 +40,9 @@ class Page:
 
     def say(self, *sentences: str, style: str = "") -> None:
         """Print sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
+        if IN_MARKDOWN.get():
+            print("".join(f"{printable(words)}\n\n" for words in sentences), end="")
+            return
         for words in sentences:
             for line in wrapped(printable(words), self.width):
                 self.line(line, style)
@@ -57,6 +60,9 @@ class Page:
         no room follow below, with the first ``keys`` columns again. Numbers and names are never broken.
         """
         rows = [[printable(word, keep="") for word in row] for row in chain.from_iterable(groups)]
+        if IN_MARKDOWN.get():
+            print(*markdown_table([columns, *rows]), sep="\n", end="\n\n")
+            return
         heads, cells = [printable(head) for head in columns], list(zip(*rows, strict=True))
         widths, blocks = list(map(_widest, heads, cells)), [list(range(len(heads)))]
         if self.room and _width(widths) > self.room:

@@ -10,11 +10,10 @@ from ..explain.contact import Contact
 from ..explain.messages import measured_quantities, notes, reasons, remarks, unmarked, verdict
 from ..numbers.digits import rounding_to_place, rounding_to_uncertainty, strip_zeros, with_uncertainty
 from ..solver.answers import Answers
-from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..solver.scene import with_unit
 from .files import printable
-from .text import VERSION, cell, inputs_in_words, scene_record, terms_record
+from .text import IN_MARKDOWN, VERSION, cell, inputs_in_words, scene_record, terms_record
 
 if TYPE_CHECKING:
     from .page import Page
@@ -65,8 +64,8 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
     With ``values``, uncertain ones are said with their uncertainties.
     """
     sentences = [quantity_in_words(answers, name) for name in names if values and answers.uncertainty(name)]
-    if "regime" in names and answers.decided.mu_assumed:
-        sentences.insert(0, f"regime: {REGIME_ASSUMED}.")
+    assumptions = [f"{name}: {why}." for name, why in answers.decided.assumptions.items() if name in names]
+    sentences = assumptions + sentences
     return [
         *sentences,
         *map(unmarked, remarks(answers.to_six_digits)),
@@ -103,13 +102,15 @@ COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 
 def print_table(
-    answers: Answers, whole: bool = False, budget: bool = False, page: "Page | None" = None
+    answers: Answers, only: Sequence[str] | bool = False, budget: bool = False, page: "Page | None" = None
 ) -> None:
-    """Print the scene, the verdict, the main quantities or the ``whole`` table, notes, and the budget."""
+    """Print the scene, the verdict, the main quantities or ``only`` some (True: all), notes, the budget."""
     from .page import Page
 
     answers, page = answers.to_six_digits, page or Page()
-    names = answers.names[1:] if whole else main_quantities(answers)
+    names = main_quantities(answers)
+    if only:
+        names = [name for name in answers.names[1:] if only is True or name in only]
     measured = measured_quantities(answers)
     groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *measured)])
     stated = [quantity_in_words(answers, name) for name in measured if cell(answers[name])]
@@ -194,7 +195,7 @@ LEAST_WIDTH, MOST_WIDTH = 40, 80
 """The width of a derivation, in characters."""
 
 
-def print_steps(answers: Answers, names: Sequence[str], markdown: bool) -> None:
+def print_steps(answers: Answers, names: Sequence[str]) -> None:
     """Print the derivation of these quantities, or of all: in the columns of a terminal, or as Markdown."""
     from ..explain.derivation import explain
     from .page import Page
@@ -202,7 +203,7 @@ def print_steps(answers: Answers, names: Sequence[str], markdown: bool) -> None:
 
     given = inputs_in_words(answers.decided.scene).values()
     explanation = explain(answers, names)
-    if markdown:
+    if IN_MARKDOWN.get():
         for line in as_markdown(given, explanation):
             print(printable(line))
         return

@@ -2,9 +2,11 @@
 
 import json
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from contextvars import ContextVar
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
@@ -43,7 +45,6 @@ def wrapped(words: str, width: int, first: str = "", later: str = "") -> list[st
 
     ``first`` stands before the first line, and ``later`` before every other line.
     """
-    import re
     from textwrap import wrap
 
     pieces = re.sub(UNBROKEN, "\xa0", words).split(" ")
@@ -115,9 +116,31 @@ def _write_csv(report: Report) -> None:
         table.writerow(map(cell, record.values()))
 
 
+IN_MARKDOWN = ContextVar("markdown", default=False)
+"""Whether pages are printed as Markdown."""
+
+
+def _write_markdown(report: Report) -> None:
+    token = IN_MARKDOWN.set(True)
+    try:
+        report.page()
+    finally:
+        IN_MARKDOWN.reset(token)
+
+
+def markdown_table(rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """Yield the lines of a table in Markdown, whose first row is its header."""
+    for number, row in enumerate(rows):
+        cells = (re.sub(r"([|\\])", r"\\\1", " ".join(cell.split())) for cell in row)
+        yield f"| {' | '.join(cells)} |"
+        if not number:
+            yield f"|{' --- |' * len(row)}"
+
+
 FORMS = {
     "json": Form(".json", "Print JSON.", _write_json, True),
     "csv": Form(".csv", "Print CSV, with a line of names first.", _write_csv, False),
+    "markdown": Form(".md", "Print the page as Markdown.", _write_markdown, True),
 }
 """The forms, by the name of their option. Without such an option a page is printed, or bare values."""
 
