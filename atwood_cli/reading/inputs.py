@@ -155,6 +155,8 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
         rule = _not_a_number(parameter, in_ascii(text))
     except Malformed as error:
         rule = str(error)
+        if "," in text and is_uncertain(text):
+            rule = f"has a comma; write {shortened(text.replace(',', '.'))}"
     raise SceneError(name, given, rule)
 
 

@@ -60,7 +60,7 @@ ONE = Fraction(1)
 _LARGEST = 10**MAX_MAGNITUDE
 TOO_LONG = f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits"
 
-_UNIT = r"[A-Za-zµμ°](?:[A-Za-zµμ/*·^ 2²⁻-]{0,10}[A-Za-z2²])?"
+_UNIT = r"[A-Za-zа-яН°µμ](?:[A-Za-zа-яН/*·^ 2²⁻µμ-]{0,10}[A-Za-zа-яН2²])?"
 _DIGITS, _POWER, _TAIL = r"(?:\d+(?:\.\d*)?|\.\d+)", r"(?:[eE][+-]?\d+)?", rf"(?: ?{_UNIT})?"
 _DECIMAL = rf"[+-]?{_DIGITS}{_POWER}"
 _QUOTIENT = rf"{_DECIMAL}(?: ?/ ?{_DECIMAL})?"
@@ -85,6 +85,18 @@ _MIXED = re.compile(rf"(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([{''.join(_VULGAR)
 _PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
 _SYMBOLS = {symbol.translate(_PLAIN): symbol for symbols in UNITS.values() for symbol in symbols}
 _DIMENSIONS = {symbol: dimension for dimension, symbols in UNITS.items() for symbol in symbols}
+WORDS = {
+    "kg": "kilogram kilograms kilos кг",
+    "g": "gram grams gramm gramme grammes gramos gramas gr gm gms г",
+    "m": "meter meters metre metres м",
+    "cm": "centimeters centimetres см",
+    "s": "sec second seconds sek seg сек с",
+    "N": "newton newtons Н",
+    **{"mg": "мг", "mm": "мм", "ms": "мс", "min": "мин", "mN": "мН", "m/s2": "м/с2", "cm/s2": "см/с2"},
+    **{"in": "inch inches", "ft": "foot feet", "lb": "pound pounds"},
+}
+"""Other words for units."""
+_SYMBOLS |= {word: symbol for symbol, words in WORDS.items() for word in words.split()}
 
 # An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g, 1g±2%.
 _SIGN = r" ?(?:±|\+/?-) ?"
@@ -163,6 +175,8 @@ def _split_uncertainty(text: str) -> tuple[str, str]:
         value, digits, tail = match.groups()
         places = len(value.partition(".")[2])
         return value + tail, f"{Decimal((0, tuple(map(int, digits)), -places)):f}{tail}"
+    if re.search(rf"{_SIGN}0\d", text):
+        raise Malformed("has an uncertainty that begins with 0 and no point; write it like 0.1")
     if match := re.fullmatch(IN_BRACKETS, text, re.ASCII):
         value, u, percent, tail = match.groups()
         return value + tail, u + (PERCENT if percent else tail)
@@ -275,4 +289,4 @@ def terms_of(parameter: Parameter, unit: str) -> Terms | None:
 
 def symbol_of(unit: str) -> str:
     """Return the symbol of a unit as the table has it, "" if it is none of them."""
-    return _SYMBOLS.get(unit.translate(_PLAIN), "")
+    return _SYMBOLS.get(unit.translate(_PLAIN).rstrip("."), "")
