@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 from ..numbers.text import in_quotes, without_blanks
 from .headings import SEPARATORS, Vocabulary, best_header, recognised
-from .sources import Unreadable, blocks_of, opened, whole_lines
+from .sources import Unreadable, blocks_of, whole_lines
+from .workbooks import opened_table
 
 MOST_ABOVE = 40
 """The most rows of titles above the headings."""
@@ -33,12 +34,17 @@ class Sheet(NamedTuple):
     remarks: Sequence[str] = ()
 
 
-def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
-    """Read a file by its path, stdin by "-", a mapping or a data frame as texts. Raises Unreadable."""
+def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str], name: str | None = None) -> Sheet:
+    """Read a file by its path, stdin by "-", a mapping or a data frame as texts. Raises Unreadable.
+
+    ``name`` is that of a sheet, in a workbook.
+    """
     if isinstance(source, str | PathLike):
         with ExitStack() as stack:
-            content = _content(blocks_of(opened(fspath(source), stack)))
-        return read_sheet(content, vocabulary, named)
+            file, remarks = opened_table(fspath(source), name, stack)
+            content = _content(blocks_of(file))
+        sheet = read_sheet(content, vocabulary, named)
+        return sheet._replace(remarks=[*remarks, *sheet.remarks])
     if hasattr(source, "collect") or not (hasattr(source, "items") or hasattr(source, "columns")):
         raise Unreadable(f"it is of type {type(source).__name__}; give a path, a mapping or a data frame")
     columns: list[tuple[str, list[str]]] = []

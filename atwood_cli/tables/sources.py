@@ -21,7 +21,8 @@ FORMATS = ("csv", "tsv", "ndjson", "parquet")
 """The formats of tables, each by its file suffix."""
 STDIN = "-"
 """The name of a file that is standard input."""
-SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
+WORKBOOKS = (".xlsx", ".xlsm", ".ods")
+SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"} | dict.fromkeys(WORKBOOKS, "csv")
 BLOCK_BYTES = 2 << 20
 """The bytes that are read at a time. A piece of a table takes several times as much memory."""
 MOMENT = 0.05  # seconds
@@ -30,7 +31,7 @@ LONGEST_RECORD = 1 << 20
 TOO_LONG = f"is longer than {LONGEST_RECORD >> 20} MB, the most taken"
 FOREIGN = {
     rb"\x1f\x8b|BZh|\xfd7zXZ|\x28\xb5\x2f\xfd": "compressed; unpack it first",
-    rb"PK\x03\x04|\xd0\xcf\x11\xe0": "a workbook (.xlsx, .xls), or an archive; save the sheet as CSV",
+    rb"PK\x03\x04|\xd0\xcf\x11\xe0": "a workbook or an archive; give a workbook by its name, .xlsx or .ods",
     rb"\xff\xfe|\xfe\xff|.?\0": "in UTF-16 or UTF-32; save it as UTF-8",
     rb"PAR1": "Parquet; batch reads it with --from parquet, and fit reads CSV",
     rb"\[[{\n]": "a JSON array; write an object a line, and give --from ndjson to batch",
@@ -65,9 +66,10 @@ def read_format(given: str | None, path: str) -> str:
 
 
 def check_format(path: str, kind: str) -> None:
-    """Refuse a file whose suffix does not fit the format of the table. Raises SceneError."""
+    """Refuse a file whose suffix does not fit the format that is written. Raises SceneError."""
     suffix = Path(path).suffix.lower()
-    if suffix and SUFFIXES.get(suffix) != kind and not is_stream(path):
+    fits = suffix == f".{kind}" or (SUFFIXES.get(suffix) == kind and suffix not in WORKBOOKS)
+    if suffix and not fits and not is_stream(path):
         raise SceneError("output", path, f"must end in .{kind}, as the table is {kind}")
 
 
