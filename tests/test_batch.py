@@ -181,7 +181,7 @@ def test_what_is_large_and_a_table(batch: Batch) -> None:
 
 def test_what_is_wrong_with_rows_that_are_alike_is_found_once(batch: Batch) -> None:
     """It takes 25 us a row: two million of them took a minute."""
-    with patch.object(solving, "_why", wraps=solving._why) as why:
+    with patch.object(solving, "_solve_row", wraps=solving._solve_row) as why:
         ran = batch("m1,m2,note\n" + "1,-1,a\n1,3,b\n1,,c\n" * 50)
     assert why.call_count == len({*errors_of(ran)} - {""}) == 2
 

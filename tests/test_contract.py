@@ -56,7 +56,10 @@ PYTHON: dict[str, tuple[Iterable[str], str]] = {
         "m1 m2 M? mu? mu_k? * g? inertia? I? R? wrap=180.0 axle? accuracy='certified' quantities?",
     ),
     "solve_table": (parameters(solve_table), "table quantities?"),
-    "fit": (parameters(fit), "runs * drop? g? M? inertia? I? R? axle? find? without=()"),
+    "fit": (
+        parameters(fit),
+        "runs * drop? m1? m2? hanger? g? M? inertia? I? R? axle? find? without=() sheet?",
+    ),
     "Solution": ([one.name for one in fields(Solution)], f"scene notes regime {VALUES} uncertainty"),
     "Scene": (Scene._fields, f"{SCENE} motion terms"),
     "Fit": (Fit._fields, FITTED),

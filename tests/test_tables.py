@@ -6,10 +6,14 @@ How a table by words of its own is read, and which are refused, stands in `cases
 import gzip
 import re
 from fractions import Fraction
+from io import BytesIO
+from itertools import count
 from math import nan
 from pathlib import Path
+from random import Random
 from types import SimpleNamespace
 from typing import Any
+from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
 import pytest
@@ -22,26 +26,27 @@ from atwood_cli.solver.scene import INPUTS
 from atwood_cli.tables import headings, sheets, sources
 from atwood_cli.tables.sources import Unreadable
 
+from .conftest import many
 from .tools.running import Batch
 
 # Headings and cells: the grammar that `fit` and `batch` share
 
 SCENES = headings.Vocabulary({name.replace("_", ""): name for name in INPUTS})
 HEADINGS = {
-    "m1": "m1|m_1|m 1|m₁|M1",
-    "m1 kg": "m1 (kg)|m1(kg)|m1 [kg]|m1/kg|m1 / kg|m1 in kg|m₁ (kg)|m_1 [ kg ]|m1\n(kg)|m1\u00a0(kg)|M1/kg",
-    "time": "t|T|time|Time|t (-)|time [1]",
-    "time s": "t (s)|t [s]|t/s|t in s|Time (s)|Time(s)|time / s|T (s)",
+    "m1": "m1|m_1|m 1|m₁|M1|mass1|Masse 1|Mass 1 (m)|m1 (-)",
+    "m1 kg": "m1 kg|m1_kg|m_1_kg|m1,kg|m1, kg|Masse 1, kg|m1 (kg)|m1(kg)|m1 [kg]|m1/kg|m1 / kg|m1 in kg|m₁ (kg)|m_1 [ kg ]|m1\n(kg)|m1\u00a0(kg)|M1/kg",
+    "time": "t|T|time|Time|t (-)|time [1]|Time (t)",
+    "time s": "t, s|t s|t_s|time,s|t (s)|t [s]|t/s|t in s|Time (s)|Time(s)|time / s|T (s)",
     "time 2": "t2|t_2|t 2|t₂|time2|time 2|Time 2|T2",
-    "time 2 ms": "t2 (ms)|time 2 [ms]|t_2/ms|Time 2 in ms",
+    "time 2 ms": "t2_ms|time 2, ms|time 2 ms|t2 (ms)|time 2 [ms]|t_2/ms|Time 2 in ms",
     "a": "a|A|acceleration",
     "a 1": "a1",
     "a m/s²": "a (m/s²)|a/(m/s²)|a [m/s²]|a in m/s²|A (m/s²)|acceleration in m/s²",
     "drop": "drop|h|Height",
-    "drop m": "h (m)|H/m|Height in m",
+    "drop m": "h_m|drop, m|h (m)|H/m|Height in m",
     "u(a)": "u(a)|u (a)|a_err|a err|±|+/-|± (-)",
-    "u(a) m/s2": "u(a) (m/s2)|a_err [m/s2]|u(a)/(m/s2)|u(a) in m/s2|± (m/s2)",
-    "": "mass1|Masse 1|Δm|m1+m2|tt|Trial 1 (s)|fall time|u(b)|b_err|a_error|t#2||(s)|m1 kg|mu|TIME",
+    "u(a) m/s2": "u(a), m/s2|a_err_m/s2|±, m/s2|u(a) (m/s2)|a_err [m/s2]|u(a)/(m/s2)|u(a) in m/s2|± (m/s2)",
+    "": "Δm|t mean|h_fall|t_max|m1+m2|tt|Trial 1 (s)|fall time|u(b)|b_err|a_error|t#2||(s)|mu|TIME",
 }
 
 
@@ -80,9 +85,9 @@ def test_a_column_that_is_refused_may_pass_as_a_label(columns: str) -> None:
 
 
 DOUBTFUL = (
-    "m1: m1_g|mass1|M1|m₁ kg; M: Mass|pulley_mass|Pulley mass (g)|m|M_kg; mu: μ|µ|friction|MU; g: gravity|G"
+    "M: Mass|pulley_mass|Pulley mass (g)|pulley mass, g|m|m_kg; mu: μ|µ|friction|MU; g: gravity|G; wrap: φ"
 )
-DOUBTFUL += "; inertia: beta|Inertia; I: moment of inertia; R: radius|R_cm|R cm; wrap: φ|wrap_deg; axle: Axle (N)|axle_mN"
+DOUBTFUL += "; inertia: beta|Inertia; I: moment of inertia; R: radius|radius_cm|r cm; axle: Axle (N)|Axle_mN"
 
 
 @pytest.mark.parametrize("words", DOUBTFUL.split("; "))
@@ -136,7 +141,7 @@ def read(tmp_path: Path) -> Any:
 
     def call(table: str | bytes, name: str = "runs.csv", **named: str) -> Runs:
         (tmp_path / name).write_bytes(table if isinstance(table, bytes) else table.encode())
-        return read_runs(tmp_path / name, drop=DROP, named=named)
+        return read_runs(tmp_path / name, given={"drop": DROP}, named=named)
 
     return call
 
@@ -157,12 +162,15 @@ def test_uncertainties_are_in_the_unit_of_their_column(read: Any) -> None:
     first, second = "0.2 0.207 3.9 4 0.0001 0.0002 0.02 0.02", "0.201 0.207 5 0 0.00207 0.02"
     assert numbers(runs := read(table)) == exactly(first, second)
     assert runs.remarks == [
-        "read as: 'm1 (g)' as m1 in g, '±' as u(m1), 'm2 (g)' as m2 in g, '±' as u(m2), 't1 (s)' as time in s,"
+        "read as: 'm1 (g)' as m1 in g, '±' as u(m1), 'm2 (g)' as m2 in g, '±' as u(m2), 't1 (s)',"
         " 't2 (s)' as time in s, 'u(t) (ms)' as u(time) in ms."
     ]
     behind, percent = "m1,m2,t1,±,t2,±\n1,2,4,0.1,5,0.2\n", "m1,m2,t1,u(t1) (%),t2,± (%)\n1,2,4,1,5,2%\n"
     assert numbers(read(behind)) == exactly("1 2 4 5 0 0 0.1 0.2")
     assert numbers(read(percent)) == exactly("1 2 4 5 0 0 0.04 0.1")
+
+
+UNIT_OF_M1 = "'m1 (kg)' as m1 in kg; 'm2' in kg, 'time' in s, as no unit is given"
 
 
 @pytest.mark.parametrize(
@@ -185,7 +193,7 @@ def test_uncertainties_are_in_the_unit_of_their_column(read: Any) -> None:
         ('5" drop\n' + TABLE, ABOVE),
         ("Lab 3,,\n,,\n" + TABLE, ABOVE),
         ("\ufeffLab 3;;;;\n" + SEMICOLONS.replace("\n", ";;\n") + ";;;;\n", f"{PARTED}, {ABOVE}"),
-        (TABLE.replace("m1", '"m1\n(kg)"'), "'m1 (kg)' as m1 in kg"),
+        (TABLE.replace("m1", '"m1\n(kg)"'), UNIT_OF_M1),
         (TABLE.encode("utf-16"), ""),  # as Excel saves "Unicode text"
         (b"\xfe\xff" + TABLE.replace(",", "\t").encode("utf-16-be"), ""),
         (
@@ -222,9 +230,9 @@ UNCERTAIN = "error|u|± a|σ|Uncertainty (s)".split("|")
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", "; make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
-        ("n,mass one (g),Zeit (s),mass two (g)\n1,2,3,4\n", "; name them, as --column m1=HEADING --column m2=HEADING --column t=HEADING, and likewise each repeat"),
-        *((f"m1,m2,a,{column}\n1,2,3,4\n", f"column '{column}' could be an uncertainty") for column in UNCERTAIN),
+        ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", ": make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
+        ("n,mass one (g),Zeit (s),mass two (g)\n1,2,3,4\n", "; give --column 'm1=mass one (g)' --column 'm2=mass two (g)' --column 't=Zeit (s)'"),
+        *((f"m1,m2,t,{column}\n1,2,3,4\n", f"column '{column}' could be an uncertainty") for column in UNCERTAIN),
     ],
 )  # fmt: skip
 def test_files_that_are_refused_with_a_sentence(read: Any, content: str, words: str) -> None:
@@ -233,12 +241,121 @@ def test_files_that_are_refused_with_a_sentence(read: Any, content: str, words: 
     assert words in f"{refused.value}{refused.value.options}"
 
 
+CALLED = {"m1": "m1|M1|mass 1|Masse_1|Größere Masse (m)|Масса груза|Wagen (A)", "drop": "drop|h|Fallhöhe|Weg (h)|альтитуда", "t": "t|Time|Zeit (t)|temps|t mean"}  # fmt: skip
+IN_UNITS: dict[str, dict[str, Any]] = {"m1": {"g": "1e-3", "kg": 1, "mg": "1e-6", "lb": "0.45359237", "г": "1e-3"}, "drop": {"cm": "1e-2", "m": 1, "мм": "1e-3", "in": "0.0254"}, "t": {"s": 1, "ms": "1e-3", "с": 1}}  # fmt: skip
+WAYS = [" (%s)", "(%s)", " [%s]", "/%s", " in %s", ", %s", ",%s", " %s", "_%s", " (%s) (left)", ""]
+TRUTH = {"m1": ("0.2", "0.21"), "drop": ("0.9", "1.1"), "t": ("3.5", "2.5")}
+
+
+def test_no_heading_changes_a_result_without_a_word(tmp_path: Path) -> None:
+    """A table reads as it does in SI units, or is refused, or the line "read as" says that no unit is given."""
+    rng, same, ways = Random(58), 0, set[bool]()
+    for _ in range(many(2000)):
+        columns, named = {"m2": ["0.3", "0.4"]}, dict[str, str]()
+        for name, truth in TRUTH.items():
+            unit, way = rng.choice([*IN_UNITS[name]]), rng.choice(WAYS)
+            column = rng.choice(CALLED[name].split("|")) + (way % unit if way else "")
+            scale = Fraction(IN_UNITS[name][unit]) if way else 1
+            columns[column] = [str(float(Fraction(x) / scale)) for x in truth]
+            if rng.random() < 0.7:
+                named[column] = name
+        try:
+            runs = read_runs(columns, named=named)
+        except Unreadable as refused:
+            ways.add("--" in refused.options)
+            continue
+        said = runs.remarks[0].partition("; ")[2]
+        got = [runs.given["m1"], runs.given["drop"], runs.values]
+        for column, truth, values in zip([*columns][1:], TRUTH.values(), got, strict=True):
+            right = np.allclose(values, [*map(float, truth)], rtol=1e-9)
+            assert right or repr(column) in said, (column, named, runs.remarks)
+            same += right
+    assert ways == {True}
+    assert same > many(2000)
+
+
+def workbook(parts: dict[str, str]) -> bytes:
+    """An archive of these parts."""
+    with ZipFile(content := BytesIO(), "w", ZIP_DEFLATED) as archive:
+        for name, part in parts.items():
+            archive.writestr(name, part)
+    return content.getvalue()
+
+
+ROOT = "<a xmlns:r='R' xmlns:table='T' xmlns:office='urn:office:1.0' xmlns:text='X' xmlns:calcext='C'>%s</a>"
+XLSX = {
+    "xl/workbook.xml": ROOT % "<sheet name='Old' state='hidden' r:id='a'/><sheet name='Lab' r:id='b'/>",
+    "xl/_rels/workbook.xml.rels": ROOT % "<x Id='a' Target='s.xml'/><x Id='b' Target='/xl/t.xml'/>",
+    "xl/styles.xml": ROOT % """<numFmt numFmtId='170' formatCode='0.0" g"'/><cellXfs><xf numFmtId='0'/><xf numFmtId='45'/><xf numFmtId='14'/><xf numFmtId='170'/><xf numFmtId='10'/></cellXfs>""",
+    "xl/sharedStrings.xml": ROOT % "<si><t>Lab 3</t></si><si><r><t>m</t></r><r><t>1</t></r><rPh><t>x</t></rPh></si>",
+    "xl/s.xml": ROOT % "",
+    "xl/t.xml": ROOT % "<row><c r='A1' t='s'><v>0</v></c></row><row><c r='A2' t='s'><v>1</v></c><c r='B2' t='inlineStr'><is><t>m2</t></is></c><c r='C2' t='str'><v>t (s)</v></c><c r='D2' t='str'><v>u(t)</v></c></row><row><c r='A3' s='3'><f>1+1</f><v>200.09999999999999</v></c><c r='B3'><v>0.21</v></c><c r='C3' s='1'><v>4.6180555555555553E-5</v></c><c r='D3' s='4'><v>0.02</v></c></row><row><c r='B4'><v>0.22</v></c><c r='C4'><v>3</v></c><c r='D4'><v>0.1</v></c></row><mergeCells><mergeCell ref='A3:A4'/></mergeCells>",
+}  # fmt: skip
+ODS = {
+    "content.xml": ROOT % "<style table:name='h'><table-properties table:display='false'/></style><table:table table:name='Old' table:style-name='h'/><table:table table:name='Lab'><table:table-row><table:table-cell><text:p>Lab 3</text:p></table:table-cell><table:table-cell table:number-columns-repeated='16000'/></table:table-row><table:table-row><table:table-cell><text:p>m1</text:p></table:table-cell><table:table-cell><text:p>m2</text:p></table:table-cell><table:table-cell><text:p>t (s)</text:p></table:table-cell><table:table-cell><text:p>u(t)</text:p></table:table-cell></table:table-row><table:table-row><table:table-cell table:number-rows-spanned='2' office:value-type='float' office:value='200.1'><text:p>200,1 g</text:p></table:table-cell><table:table-cell office:value-type='float' office:value='0.21'/><table:table-cell office:value-type='time' office:time-value='PT00H00M03.99S'/><table:table-cell office:value-type='percentage' office:value='0.02'/></table:table-row><table:table-row><table:covered-table-cell/><table:table-cell office:value-type='float' office:value='0.22'/><table:table-cell office:value-type='float' office:value='3'/><table:table-cell office:value-type='float' office:value='0.1'/></table:table-row><table:table-row table:number-rows-repeated='1048000'><table:table-cell table:number-columns-repeated='16384'/></table:table-row></table:table>",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "parts"), [("runs.xlsx", XLSX), ("runs.ods", ODS)])
+def test_a_workbook_is_its_first_sheet_with_numbers_as_shown(
+    read: Any, name: str, parts: dict[str, str]
+) -> None:
+    """A formula has its stored value, a merged cell counts in all rows, a clock, a percentage and a unit are read."""
+    runs = read(workbook(parts), name)
+    assert numbers(runs) == exactly("0.2001 0.21 3.99 0 0 0.0798", "0.2001 0.22 3 0 0 0.1")
+    assert "sheet 'Lab' of 'Old' (hidden), 'Lab'" in runs.remarks[0]
+    main = "xl/t.xml" if "xlsx" in name else "content.xml"
+    dates = {"<c r='B3'><v>0.21</v>": "<c r='B3' s='2'><v>45000</v>", "office:value='0.21'": "office:date-value='2026-03-05'"}  # fmt: skip
+    for old, new in {
+        **dates,
+        "<v>0.21</v>": "<f>A3</f>",
+        "<c r='B3'><v>0.21": "<c r='B3' t='e'><v>#DIV/0!",
+    }.items():
+        part = parts[main].replace(old, new)
+        part = part.replace("float' office:date", "date' office:date")
+        if part != parts[main]:
+            with pytest.raises(Unreadable, match=r"row 1: m2 '(a date, |=A3|#DIV/0!).* is not a number"):
+                read(workbook(parts | {main: part}), name)
+
+
+@pytest.mark.parametrize(
+    ("content", "why"),
+    [
+        (b"PK\x03\x04", "it is damaged, has a password, or is no workbook"),
+        (workbook({"content.xml": "<!DOCTYPE x><a/>"}), "content.xml has a document type"),
+        (workbook({"content.xml": "<a/>", "big": "0" * (65 << 20)}), "it is larger than 64 MB, unpacked"),
+        (workbook({"content.xml": ODS["content.xml"].replace("<table:covered-table-cell/>", "<table:table-cell table:number-columns-repeated='9000000'><text:p>1</text:p></table:table-cell>")}), "it has more than 4 million cells"),
+        (workbook(XLSX | {"xl/t.xml": ROOT % "".join(f"<c r='XFD{i}'><v>1</v></c>" for i in range(1, 300))}), "sheet 'Lab' has more than 4 million cells"),
+    ],
+    ids=count(),
+)  # fmt: skip
+def test_workbooks_that_are_refused(read: Any, content: bytes, why: str) -> None:
+    with pytest.raises(Unreadable, match=why):
+        read(content, "runs.xlsx")
+
+
+def test_a_workbook_with_a_password_is_refused(read: Any) -> None:
+    content = bytearray(workbook(ODS))
+    content[6] |= 1
+    content[content.rindex(b"PK\x01\x02") + 8] |= 1
+    with pytest.raises(Unreadable, match="it has a password"):
+        read(bytes(content), "runs.ods")
+
+
+def test_sheets_by_name(batch: Batch) -> None:
+    ran = batch(workbook(ODS), "--only a --sheet Las", "in.ods")
+    assert ran.err == "atwood: cannot read IN: there is no sheet 'Las'; there are 'Old' (hidden), 'Lab'\n"
+    plain = ODS["content.xml"].replace("<text:p>Lab 3</text:p>", "")
+    ran = batch(workbook({"content.xml": plain}), "--only a --digits 3 --sheet Lab", "in.ods")
+    assert ran.out.splitlines()[1:] == ["200.1 g,0.21,00:00:03.99,2%,0.237,", "200.1 g,0.22,3,0.1,0.465,"]
+
+
 def test_a_small_file_does_not_fill_the_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file of 1 MB with 1 GB of blank lines took 11 GB."""
     (tmp_path / "runs.csv.gz").write_bytes(gzip.compress(b"\n" * (3 << 20)))
     monkeypatch.setattr(sheets, "MOST_BYTES", 1 << 20)
     with pytest.raises(Unreadable, match="it is larger than 1 MB, unpacked, the most that fit reads"):
-        read_runs(tmp_path / "runs.csv.gz", drop=DROP)
+        read_runs(tmp_path / "runs.csv.gz", given={"drop": DROP})
 
 
 def test_columns_are_as_a_file_of_them(read: Any, tmp_path: Path) -> None:
@@ -261,8 +378,8 @@ def test_columns_are_as_a_file_of_them(read: Any, tmp_path: Path) -> None:
         polars.DataFrame(columns),
         polars.DataFrame(missing),
     ):
-        runs = read_runs(source, drop=DROP)
-        assert (numbers(runs), runs.remarks) == (numbers(want), ["read as: 't1' as time, 't2' as time."])
+        runs = read_runs(source, given={"drop": DROP})
+        assert (numbers(runs), runs.remarks) == (numbers(want), want.remarks)
     pairs = [("m1 (g)", [1000]), ("±", [100]), ("m2", ["2"]), ("±", [0.2]), ("a", [3])]
     pandas = SimpleNamespace(items=lambda: iter(pairs))  # in which several columns may have one heading
     assert numbers(read_runs(pandas)) == exactly("1 2 3 0.1 0.2 0")

@@ -1,12 +1,13 @@
 """Files of scenes: each record comes out as it went in, followed by its results."""
 
+import csv
 import os
 import signal
 import stat
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, nullcontext
-from io import BytesIO
+from io import BytesIO, StringIO
 from itertools import chain, islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
@@ -14,10 +15,12 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 from ..numbers.text import without_blanks
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
+from ..output.text import markdown_table
 from ..solver.scene import SceneError
 from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
-from ..tables.records import Csv, Piece, read_ndjson
-from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened
+from ..tables.records import BYTE_ORDER_MARK, Csv, Piece, read_ndjson
+from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream
+from ..tables.workbooks import opened_table
 from .frames import check_polars
 from .parquet import solve_parquet
 from .solving import ERROR, VOCABULARY, ReadColumns, Tally, Wanted, read_columns, solve_cells
@@ -27,13 +30,18 @@ if TYPE_CHECKING:
 
 
 class Job(NamedTuple):
-    """A table and its format, the file that it goes to, and the question that is wanted of it."""
+    """A table and its format, the file that it goes to, what is wanted of it, the sheet of a workbook.
+
+    With ``markdown`` the table is written in Markdown.
+    """
 
     source: str
     kind: str
     target: str
     force: bool
     wanted: Wanted
+    sheet: str | None = None
+    markdown: bool = False
 
 
 def run_batch(job: Job, tally: Tally) -> list[str]:
@@ -44,7 +52,7 @@ def run_batch(job: Job, tally: Tally) -> list[str]:
     _check_apart(job)
     with ExitStack() as stack:
         try:
-            source = opened(job.source, stack)
+            source, how = opened_table(job.source, job.sheet, stack)
             target: IO[bytes] | Stdout = Stdout()
             if job.target != STDOUT:
                 beside = stack.enter_context(written_beside(Path(job.target), job.force))
@@ -54,7 +62,7 @@ def run_batch(job: Job, tally: Tally) -> list[str]:
             target.flush()
         except Unreadable as error:
             raise cannot_read(job.source, error) from None
-    return remarks
+    return [*(f"read: {remark}." for remark in how), *remarks]
 
 
 def _check_apart(job: Job) -> None:
@@ -72,7 +80,7 @@ def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> AbstractCo
     """Show how far it is while pieces pass, unless results go to a terminal."""
     if job.target == STDOUT and sys.stdout.isatty():
         return nullcontext(pieces)
-    is_known = not (is_stream(job.source) or is_packed(job.source))
+    is_known = not (is_stream(job.source) or is_packed(job.source) or isinstance(source, BytesIO))
     size = os.fstat(source.fileno()).st_size if is_known else None
     return progress(pieces, size, lambda piece: piece.size, lambda piece: len(piece.texts))
 
@@ -88,11 +96,13 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
         cells = piece.cells
         comma = decimal_commas_in(cells.iter_rows(), range(cells.width), table.separator)
         columns = columns._replace(comma=comma)
-    target.write((table.separator.join([table.header, *wanted.names, ERROR]) + table.line_end).encode())
+    header = f"{table.separator.join([table.header, *wanted.names, ERROR])}{table.line_end}".encode()
+    target.write(_markdown(header, table, True) if job.markdown else header)
     with _watched(chain(first, pieces), job, source) as watched:
         for piece in watched:
             results = solve_cells(piece.cells, columns, wanted, tally, piece.errors)
-            target.write(_csv(piece, results, table, columns.comma))
+            rows = _csv(piece, results, table, columns.comma)
+            target.write(_markdown(rows, table, False) if job.markdown else rows)
             target.flush()
     return _remarks(columns, table.separator)
 
@@ -115,6 +125,13 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memo
         decimal_comma=comma,
     )
     return buffer.getbuffer()
+
+
+def _markdown(rows: bytes | memoryview, table: Csv, is_header: bool) -> bytes:
+    """Return rows of CSV as those of a table in Markdown, behind a line if it is the header."""
+    text = StringIO(str(rows, "utf-8").removeprefix(BYTE_ORDER_MARK), newline="")
+    lines = markdown_table(chain([[]] * (not is_header), csv.reader(text, delimiter=table.separator)))
+    return "".join(f"{line}\n" for line in islice(lines, 2 * (not is_header), None)).encode()
 
 
 def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:

@@ -3,7 +3,6 @@
 import re
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, partial
@@ -16,18 +15,30 @@ from ..explain.messages import reasons_in
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import OTHER_NAMES, read_plain, read_scene, read_value
-from ..reading.units import Malformed, read_unit
 from ..solver.answers import Answers
 from ..solver.quantities import NAMES, REGIMES
-from ..solver.scene import INPUTS, MASSES, Scene, SceneError, parameter_of
-from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
+from ..solver.scene import INPUTS, MASSES, Angle, InTerms, Scene, SceneError, parameter_of
+from ..tables.headings import (
+    EMPTY,
+    MASS_NAMES,
+    OWN_UNIT,
+    Heading,
+    Vocabulary,
+    divisions,
+    is_unit,
+    listed,
+    pointed,
+    read_headings,
+    refused,
+    unit_within,
+)
 from ..tables.sources import Unreadable
 
 if TYPE_CHECKING:
     import polars as pl
 
 ERROR = "error"
-VOCABULARY = Vocabulary({name.replace("_", ""): name for name in INPUTS}, in_terms=True)
+VOCABULARY = Vocabulary(MASS_NAMES | {name.replace("_", ""): name for name in INPUTS})
 
 GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
 LONG_CELL = 100
@@ -38,12 +49,15 @@ class Wanted(NamedTuple):
     """The quantities wanted of a table, its columns that hold no input, and the inputs by other headings.
 
     ``conditions`` are expected to hold in each row.
+    ``given`` are inputs that all rows share, and ``digits`` those to which results are rounded, if any.
     """
 
     names: Sequence[str]
     labels: Collection[str] = ()
     named: Mapping[str, str] = {}
     conditions: Sequence[Condition] = ()
+    given: Mapping[str, str] = {}
+    digits: int | None = None
 
 
 class ReadColumns(NamedTuple):
@@ -69,18 +83,24 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
     named = {known.get(without_blanks(one), one): name for one, name in wanted.named.items()}
     headings = read_headings(columns, VOCABULARY, labels, named, whole)
     inputs = {heading.name for heading in headings}
+    if double := [name for name in wanted.given if name in inputs]:
+        raise SceneError(double[0], wanted.given[double[0]], "is a column of the table, too; leave one out")
+    inputs |= {name for name, text in wanted.given.items() if read_value(name, text) is not None}
+    if not headings and inputs >= {*MASSES}:
+        raise Unreadable(f"no column holds an input; there are {listed(columns)}")
     passed = {*labels, *(heading.column for heading in headings)}
     doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
     for column, name in doubtful.items():
         if name in INPUTS and not (whole and name in inputs):  # in NDJSON, another row may lack the input
-            *_, (_, unit) = divisions(without_blanks(column))
-            asked_unit = "" if unit or not INPUTS[name].unit else " (UNIT)"
-            way = f", or give --column {in_quotes(f'{name}{asked_unit}={column}')}"
+            has_unit = not INPUTS[name].unit or unit_within(column, Heading(0, column, name))
+            typed = f"{name}{'' if has_unit else ' (UNIT)'}={column}"
+            way = f", or give --column {in_quotes(typed)}"
             raise refused(column, f"may mean {name}; rename it", way)
     missing = [mass for mass in MASSES if mass not in inputs]
     if missing and whole:
         lacking = f"column {missing[0]} is" if len(missing) == 1 else "columns m1 and m2 are"
         way = " ".join(f"--column {mass}=HEADING" for mass in missing)
+        way += f", or --{missing[0]} for all rows"
         raise Unreadable(f"{lacking} missing; there are {listed(columns)}", f"; or give {way}")
     for column, name in doubtful.items():
         if name not in INPUTS:
@@ -91,14 +111,10 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
 
 def _meant(column: str) -> str | None:
     """Return the input that a heading may mean: in other letters, by another name or with a unit behind."""
-    *_, (name, _) = divisions(without_blanks(column))
-    letters = normalize("NFKC", name).casefold().translate(GREEK_SPELLED)
-    words = [word for word in re.split("[^0-9a-z]+", letters) if word]
-    if meant := OTHER_NAMES.get("_".join(words)):
-        return meant
-    if (meant := OTHER_NAMES.get("_".join(words[:-1]))) and (dimension := parameter_of(meant).dimensions):
-        with suppress(Malformed):
-            read_unit(re.split(r"[\W_]+", name)[-1], dimension)
+    for word, unit, is_loose in divisions(without_blanks(column)):
+        letters = normalize("NFKC", word).casefold().translate(GREEK_SPELLED)
+        meant = OTHER_NAMES.get("_".join(re.findall("[0-9a-z]+", letters)))
+        if meant and not (is_loose and not is_unit(unit, Heading(0, column, meant))):
             return meant
     return None
 
@@ -158,51 +174,84 @@ def solve_cells(
 ) -> "pl.DataFrame":
     """Return the columns to append to rows with these cells: the results, and the errors of bad rows.
 
-    ``unread`` has the errors of rows that could not be read. Raises Unreadable for a column without numbers.
+    Rows of plain numbers are solved together, those with units in their cells one by one. ``unread`` has the
+    errors of rows that could not be read. Raises Unreadable for a column without numbers, SceneError.
     """
     import polars as pl
 
     from ..arrays import VALID, solve_and_count
 
-    doubles, errors = _doubles(cells, columns)
+    shared = {name: _plain(name, text) for name, text in wanted.given.items()}
+    doubles, errors, single = _doubles(cells, columns)
+    if None in shared.values():
+        single = {*range(cells.height)}
     errors |= unread
     rows = pl.int_range(cells.height, eager=True)
-    if errors:  # only rows that could be read are solved
-        rows = rows.filter(~rows.is_in([*errors]))
+    if errors or single:
+        rows = rows.filter(~rows.is_in([*errors, *single]))
         doubles = doubles[rows]
-    given: Any = doubles.to_dict()
+    given: Any = doubles.to_dict() | shared
+    if "m1" in shared:  # perhaps all inputs are single numbers
+        given["m1"] = pl.repeat(shared["m1"], len(rows), dtype=pl.Float64, eager=True)
     terms = {one.name: one.terms for one in columns.headings if one.terms}
     solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names], terms)
-    bad = rows.filter(pl.Series(solved.pop("status")) != VALID)
-    why = cache(partial(_why, columns))  # as many rows may be alike
-    errors |= dict(zip(bad, map(why, cells[bad].iter_rows()), strict=True))
+    single |= {*rows.filter(pl.Series(solved.pop("status")) != VALID)}
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
     values = pl.DataFrame({**solved, "regime": regimes})
-    if len(rows) < cells.height:
-        places = pl.repeat(None, cells.height, dtype=pl.Int64, eager=True)
-        values = values.select(pl.all().gather(places.scatter(rows, range(len(rows)))))
+    places = pl.repeat(None, cells.height, dtype=pl.Int64, eager=True).scatter(rows, range(len(rows)))
+    solve_row = cache(partial(_solve_row, columns, wanted))  # as many rows may be alike
+    records = list[Mapping[str, Any]]()
+    for row in sorted(single - errors.keys()):
+        outcome = solve_row(cells.row(row))
+        if isinstance(outcome, str):
+            errors[row] = outcome
+            places[row] = None
+        else:
+            places[row] = values.height + len(records)
+            records.append(outcome[0])
+            reasons.update(outcome[1])
+    if records or len(rows) < cells.height:
+        values = pl.concat([values, pl.DataFrame(records, values.schema)]).select(pl.all().gather(places))
     numbers = pl.selectors.float()
-    beyond = sum(map(sum, values.select(numbers.is_infinite().sum()).iter_rows()))
+    tally.beyond += sum(map(sum, values.select(numbers.is_infinite().sum()).iter_rows()))
     values = values.select(pl.when(numbers.is_finite()).then(numbers).name.keep(), "regime")
+    if wanted.digits:
+        to_digits = f"{{:.{wanted.digits - 1}e}}".format
+        rounded = numbers.map_elements(lambda value: float(to_digits(value)), pl.Float64)
+        values = values.with_columns(rounded)
     error = pl.repeat(None, cells.height, dtype=pl.String, eager=True)
     error = error.scatter(list(errors), list(errors.values()))
     results = values.select(*wanted.names, error.alias(ERROR))
-    failures = cache(partial(_failures, columns, wanted.conditions))
+    failures = cache(partial(_failures, columns, wanted))
     for row, given_cells in enumerate(cells.iter_rows() if wanted.conditions else ()):
         if row not in errors:
             tally.fail(row, failures(given_cells))
-    tally.beyond += beyond
     tally.reasons.update({key: count for key, count in reasons.items() if key[0] in wanted.names})
     tally.add(results, values["regime"])
     return results
 
 
-def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame, dict[int, str]]":
-    """Return the inputs by name, null if a cell is empty or wrong, and the first error of each bad row."""
+def _plain(name: str, text: str) -> float | None:
+    """Return the double nearest to an input that all rows share; None if rows are to be solved one by one.
+
+    Raises SceneError.
+    """
+    value = read_value(name, text)
+    if isinstance(value, Angle | InTerms):
+        value = value.number if value.unit == "°" else None
+    return None if value is None else float(value) if value == inf else to_double(value)
+
+
+def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame, dict[int, str], set[int]]":
+    """Return the inputs by name, null if a cell is empty or no plain number.
+
+    With them come the first error of each bad row, and the rows with a cell that may have a unit.
+    """
     import polars as pl
 
     inputs: dict[str, pl.Series] = {}
     errors: dict[int, str] = {}
+    single = set[int]()
     for heading, column in zip(columns.headings, cells, strict=True):
         if column.dtype in (pl.Categorical, pl.Enum):
             column = column.cast(pl.String)
@@ -213,15 +262,18 @@ def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame
             column = column.set(column.is_in(EMPTY), None)
         doubles = _in_bulk(column, heading, columns.comma)
         rows = (column.is_not_null() & doubles.is_null()).arg_true()
-        found: list[float | None] = []
+        exact: list[float | None] = []
         for row, cell in zip(rows, column[rows], strict=True):
             try:
-                found.append(_double(heading, cell, columns.comma))
+                exact.append(_double(heading, cell, columns.comma))
             except SceneError as error:
-                found.append(None)
-                errors.setdefault(row, str(error))
-        inputs[heading.name] = doubles.scatter(rows, pl.Series(found, dtype=pl.Float64))
-    return pl.DataFrame(inputs), errors
+                exact.append(None)
+                if isinstance(cell, str) and OWN_UNIT.search(cell):
+                    single.add(row)
+                else:
+                    errors.setdefault(row, str(error))
+        inputs[heading.name] = doubles.scatter(rows, pl.Series(exact, dtype=pl.Float64))
+    return pl.DataFrame(inputs), errors, single
 
 
 def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
@@ -267,29 +319,35 @@ def _double(heading: Heading, cell: str | float, comma: bool) -> float:
     return value
 
 
-def _why(columns: ReadColumns, row: Sequence[Any]) -> str:
-    """Return the error of a row, in the words of `solve`. It quotes numbers as they were typed."""
+def _failures(columns: ReadColumns, wanted: Wanted, row: Sequence[Any]) -> Mapping[str, str]:
+    """Return what is expected of a row and fails, decided as `solve` does, with what holds instead."""
+    answers = Answers(_scene_of(columns, wanted.given, row))
+    return {x.typed: why for x in wanted.conditions if (why := failure(answers, x))}
+
+
+def _solve_row(
+    columns: ReadColumns, wanted: Wanted, row: Sequence[Any]
+) -> "tuple[dict[str, Any], dict[tuple[str, str], int]] | str":
+    """Solve a row as `solve` does: return its results and the reasons of those that lack, or its error."""
     try:
-        _scene_of(columns, row)
+        answers = Answers(_scene_of(columns, wanted.given, row))
     except SceneError as error:
         return str(error)
-    return "this row cannot be solved"
+    each = {name: answers.answer(name) for name in wanted.names if name != "regime"}
+    reasons = {(name, answer.reason): 1 for name, answer in each.items() if answer.reason}
+    values = {name: answer.value for name, answer in each.items()}
+    reasons |= dict.fromkeys(answers.decided.assumptions.items(), 1)
+    return {"regime": answers.decided.regime, **values}, reasons
 
 
-def _failures(columns: ReadColumns, conditions: Sequence[Condition], row: Sequence[Any]) -> Mapping[str, str]:
-    """Return what is expected of a row and fails, decided as `solve` does, with what holds instead."""
-    answers = Answers(_scene_of(columns, row))
-    return {x.typed: why for x in conditions if (why := failure(answers, x))}
-
-
-def _scene_of(columns: ReadColumns, row: Sequence[Any]) -> Scene:
-    """Read a row as `solve` does. Raises SceneError."""
-    cells: dict[str, Any] = {}
+def _scene_of(columns: ReadColumns, given: Mapping[str, str], row: Sequence[Any]) -> Scene:
+    """Read a row, and what all rows share, as `solve` does. Raises SceneError."""
+    cells: dict[str, Any] = {**given}
     for heading, cell in zip(columns.headings, row, strict=True):
         text = pointed(heading.name, cell, columns.comma) if isinstance(cell, str) else cell
         if text is None or text in EMPTY:
             continue
-        if heading.unit and str(text).lower() != "inf":
+        if heading.unit and not (isinstance(text, str) and OWN_UNIT.search(text)):
             text = f"{text}{heading.unit}"
         cells[heading.name] = text if isinstance(text, str) else float(text)
     return read_scene(cells)

@@ -1,17 +1,19 @@
 """`atwood batch`: a table of scenes, solved row by row."""
 
+from collections.abc import Mapping
 from typing import Annotated
 
 import typer
 
 from ..explain.conditions import read_condition
 from ..numbers.text import counted
-from ..output.text import say
+from ..output.text import FORMS, say
+from ..reading.inputs import read_whole
 from ..reading.names import read_names
 from ..solver.quantities import STANDARD
 from ..solver.scene import INPUTS, SceneError
 from ..tables.sources import FORMATS, check_format, read_format
-from .options import COULD_NOT, DONE, Columns, Expect, Force, Labels, option
+from .options import COULD_NOT, DONE, SCENE, Columns, Expect, Force, Labels, SheetName, option, with_options
 
 Table = Annotated[
     str,
@@ -19,6 +21,7 @@ Table = Annotated[
         metavar="IN",
         rich_help_panel="Files",
         help="Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz;"
+        " .xlsx, .ods;"
         " - for stdin; a pipe is read as CSV.",
         show_default=False,
     ),
@@ -42,20 +45,22 @@ Examples:
   atwood batch scenes.csv --only regime --only acceleration | head
   generate | atwood batch - --from ndjson --allow-errors
 
-Columns {", ".join(INPUTS)} are the options of solve, as numbers in SI
-units, wrap in degrees, or in the unit of the heading, as m1 (g), M [kg] or R/cm; axle is a force, not a
-torque. An empty cell, NA, NULL or null is not given. Other columns are kept and named as not read, but one
-that may mean an input is refused, like radius without R. Results follow each row; a row with too few or too
-many cells is an error. Piped rows are solved as they come. Cells are read as doubles; solve reads 0.1 as
-exactly 1/10, so its last digit may differ.
+Columns {", ".join(INPUTS)} are the options of solve, which give what all
+rows share: numbers in SI units, wrap in degrees, or in the unit of the heading, as m1 (g), M [kg] or R/cm.
+A row with units in its cells is solved by itself. An empty cell, NA, NULL or null is not given. Other columns
+are kept and named as not read, but one that may mean an input is refused, like radius without R. Results
+follow each row; a row with too few or too many cells is an error. Piped rows are solved as they come. Cells
+are read as doubles; solve reads 0.1 as exactly 1/10, so its last digit may differ.
 
 The usual seven results are {", ".join(STANDARD)}.
 The exit status is 1 if a row has an error, or if a quantity that --only names has no value in any row.
 """
 
 
+@with_options(SCENE)
 def batch(
     table: Table,
+    given: Mapping[str, str | None],
     *,
     output: OutTable = "-",
     from_: Annotated[
@@ -78,8 +83,14 @@ def batch(
         ),
     ] = None,
     label: Labels = None,
+    sheet: SheetName = None,
     only: Columns = None,
     expect: Expect = None,
+    digits: Annotated[
+        str | None,
+        option("Output", metavar="N", help="Round results, the nearest doubles, to N digits, 1 to 17."),
+    ] = None,
+    markdown: Annotated[bool, option("Output", "--markdown", help=FORMS["markdown"].help)] = False,
     allow_errors: Annotated[
         bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")
     ] = False,
@@ -91,12 +102,17 @@ def batch(
 
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
     kind = read_format(from_, table)
-    check_format(output, kind)
+    if markdown and kind not in ("csv", "tsv"):
+        raise SceneError("markdown", None, "takes a table of CSV or .tsv, or a workbook")
+    check_format(output, "md" if markdown else kind)
     if force and output == "-":
         raise SceneError("force", None, "needs --output")
     conditions = [*map(read_condition, expect or [])]
-    wanted = Wanted(names, label or (), read_named(column or (), VOCABULARY), conditions)
-    job = Job(table, kind, output, force, wanted)
+    shared = {name: value for name, value in given.items() if value is not None}
+    rounded_to = None if digits is None else read_whole("digits", digits, 1, 17)
+    named = read_named(column or (), VOCABULARY)
+    wanted = Wanted(names, label or (), named, conditions, shared, rounded_to)
+    job = Job(table, kind, output, force, wanted, sheet, markdown)
     tally = Tally(set(names))
     try:
         remarks = run_batch(job, tally)

@@ -9,14 +9,25 @@ from ..output.text import Destination, Picture, say, show
 from ..reading.names import divided, read_names
 from ..solver.scene import SceneError
 from ..tables.sources import Unreadable, cannot_read
-from .options import COULD_NOT, DONE, FIGURE, OUTPUT, Labels, check_figure, option, scene_option, with_options
+from .options import (
+    COULD_NOT,
+    DONE,
+    FIGURE,
+    OUTPUT,
+    Labels,
+    SheetName,
+    check_figure,
+    option,
+    scene_option,
+    with_options,
+)
 
 Table = Annotated[
     str,
     typer.Argument(
         metavar="RUNS",
         rich_help_panel="Files",
-        help="Table of runs, CSV or .tsv; - for stdin.",
+        help="Table of runs: CSV, .tsv, .xlsx, .ods; - for stdin.",
         show_default=False,
     ),
 ]
@@ -55,16 +66,14 @@ Examples:
   atwood fit runs.csv --column t='Fallzeit (s)' --drop 98cm
   atwood fit runs.csv --find gravity --M 84g --axle 0
   atwood fit runs.csv --find rim_mass,axle,delay --without 8:t2
-  atwood fit runs.csv --json
 
-Each row is a run, with columns m1, m2, and a, or t and drop, the height of fall (or --drop for all). Units
-stand in headings, as m1 (g) or t/s, or in cells, as solve takes them. Repeats are further rows, or columns
-t1, t2 and so on. Uncertainties are in cells, 2.05(2), or in columns headed u(t), t_err, or ±, which is that
-of the column before it. Columns by other names are labels, unless --column says what they are. A note says
-how columns of numbers were read. Either mass may be the heavier. Values of --M, --I, --axle and --g are not
-fitted. Results: rim_mass is the pulley's inertia as a mass at its rim, c = I/R², for a disk M/2; axle is the
-axle's friction as a force at the rim. Both are fitted, unless --find names others. A note names rows in
-which nothing moves or the lighter side falls; they are not used. Others are left out only by --without.
+Each row is a run, with columns m1, m2, and a, or t and drop, the height of fall; an option gives what is the
+same for all, as --m1 0. Units stand in headings, as m1 (g) or "t, s", or in cells. Repeats are further rows,
+or columns t1, t2 and so on. Uncertainties are in cells, 2.05(2), or in columns headed u(t), t_err, or ±, that
+of the column before it. Columns by other names are labels, unless --column says what they are. A note
+says how the table was read, and which rows are not used. Values of --M, --I, --axle and --g are not fitted.
+Results: rim_mass is the pulley's inertia as a mass at its rim, c = I/R², for a disk M/2; axle is the axle's
+friction as a force at the rim. Both are fitted, unless --find names others.
 """
 
 
@@ -76,18 +85,25 @@ def fit(
     *,
     find: Find = None,
     without: Without = None,
-    drop: Annotated[str | None, scene_option("drop", "Measured", ", if all runs have the same")] = None,
+    drop: Annotated[str | None, scene_option("drop", "Measured", ", of all runs")] = None,
+    m1: Annotated[str | None, scene_option("m1", remark=", of all runs")] = None,
+    m2: Annotated[str | None, scene_option("m2", remark=", of all runs")] = None,
+    hanger: Annotated[
+        str | None, option("Scene", metavar="MASS", help="Mass on each side that columns leave out.")
+    ] = None,
     M: Annotated[str | None, scene_option("M", remark=", if it is known")] = None,
-    inertia: Annotated[str | None, scene_option("inertia", remark=", or disk; adds pulley_mass")] = None,
-    I: Annotated[str | None, scene_option("I", remark=", if it is known; needs R")] = None,
+    inertia: Annotated[str | None, scene_option("inertia", remark="; adds pulley_mass")] = None,
+    I: Annotated[str | None, scene_option("I", remark="; needs R")] = None,
     R: Annotated[str | None, scene_option("R", remark="; adds moment_of_inertia")] = None,
-    axle: Annotated[str | None, scene_option("axle", remark=", if it is known")] = None,
+    axle: Annotated[str | None, scene_option("axle", remark="")] = None,
     g: Annotated[str | None, scene_option("g")] = None,
     column: Column = None,
     label: Labels = None,
+    sheet: SheetName = None,
     only: Only = None,
 ) -> int:
     given = {"M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "g": g, "drop": drop}
+    given |= {"m1": m1, "m2": m2, "hanger": hanger}
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
     if "runs" in names and (not target.form or (target.form == "csv" and names[1:])):
         raise SceneError("only", "runs", "takes --json, or --csv and no other name")
@@ -96,7 +112,7 @@ def fit(
     from ..laboratory.report import report_of
 
     try:
-        best = fit_of(table, given, find or [], label or [], divided(without or []), column or [])
+        best = fit_of(table, given, find or [], label or [], divided(without or []), column or [], sheet)
     except Unreadable as error:
         raise cannot_read(table, error) from None
     if picture is not None:

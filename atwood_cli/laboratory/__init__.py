@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ..numbers.text import naming_the_extra, sentence, without_blanks
 from ..reading.inputs import read_input
 from ..reading.names import divided
-from ..solver.scene import INPUTS, Given
+from ..solver.scene import INPUTS, MASSES, Given, Input, SceneError
 from ..tables.sources import Unreadable
 from .results import Fit as Fit
 
@@ -25,6 +25,9 @@ def fit(
     runs: Table,
     *,
     drop: Given | None = None,
+    m1: Given | None = None,
+    m2: Given | None = None,
+    hanger: Given | None = None,
     g: Given | None = None,
     M: Given | None = None,
     inertia: Given | None = None,
@@ -33,6 +36,7 @@ def fit(
     axle: Given | None = None,
     find: str | Sequence[str] | None = None,
     without: str | int | Collection[int | str] = (),
+    sheet: str | None = None,
 ) -> Fit:
     """Fit the pulley's inertia and its axle's friction to runs of a laboratory, by T_h - T_l = c a + f.
 
@@ -42,11 +46,14 @@ def fit(
             for repeats). They are in kg, m/s² and s unless the name has a unit, as "m1 (g)"; a cell may be
             text, as "2.05(2)". A missing value, as None or NaN, is an empty cell.
         drop: The height of fall of all runs, in m, for times.
+        m1, m2: A mass that all runs share, in kg; 0 if nothing hangs there.
+        hanger: The mass of the hangers on both sides, in kg, which the columns m1 and m2 leave out.
         g, M, inertia, I, R, axle: Inputs that all runs share, as `solve` takes them: numbers in SI units, or
             text with a unit or an uncertainty. M, I, axle and g are not fitted if given. R gives the moment
             of inertia, ``inertia`` the pulley's mass.
         find: The quantities to fit, of "rim_mass", "axle", "gravity" and "delay"; if None, the first two
             unless given. Of these two, each must be given or fitted.
+        sheet: The sheet of a workbook, .xlsx or .ods; the first if None.
         without: Rows to leave out, by their numbers from 1, and cells, as "8:t2"; or one of them, or a text,
             as "5,8:t2".
 
@@ -68,10 +75,11 @@ def fit(
         from .statistics import CannotSeparate
 
     given = {"g": g, "M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "drop": drop}
+    given |= {"m1": m1, "m2": m2, "hanger": hanger}
     names = [find] if isinstance(find, str) else find or ()
     left_out = divided([str(without)]) if isinstance(without, str | int) else without
     try:
-        return results_of(fit_of(runs, given, names, without=left_out), in_python=True)
+        return results_of(fit_of(runs, given, names, without=left_out, sheet=sheet), in_python=True)
     except CannotSeparate as error:
         raise ArithmeticError(sentence(error.args, in_python=True)) from None
     except Unreadable as error:
@@ -87,6 +95,7 @@ def fit_of(
     labels: Collection[str] = (),
     without: Collection[int | str] = (),
     columns: Sequence[str] = (),
+    sheet: str | None = None,
 ) -> Fitted:
     """Return the fit of a table, which may be "-" for stdin. Raises SceneError, Unreadable, CannotSeparate.
 
@@ -96,9 +105,26 @@ def fit_of(
     from .fitting import conditions_of, fitted, read_find
     from .runs import VOCABULARY, read_runs
 
-    known = [x for x, value in given.items() if value is not None]
-    inputs = {x: read_input(x, given.get(x)) for x in dict.fromkeys((*INPUTS, *known))}
-    same, named = conditions_of(inputs), read_named(map(without_blanks, columns), VOCABULARY)
-    names = read_find(find, same)
-    labels = [*map(without_blanks, labels)]
-    return fitted(read_runs(table, labels, inputs.get("drop"), without, named), same, names)
+    shared = {x: _read_given(x, value) for x, value in given.items() if value is not None}
+    inputs: dict[str, Input] = {x: read_input(x, None) for x in INPUTS}
+    inputs |= {x: one for x, one in shared.items() if x not in (*MASSES, "hanger")}
+    conditions_of(inputs)  # raises before the table is read
+    named = read_named(map(without_blanks, columns), VOCABULARY)
+    if not {"g", "gravity"} & {*divided(find)}:
+        shared.setdefault("g", inputs["g"])
+    runs = read_runs(table, [*map(without_blanks, labels)], shared, without, named, sheet)
+    conditions = conditions_of({**inputs, **runs.same})
+    return fitted(runs, conditions, read_find(find, conditions))
+
+
+def _read_given(name: str, value: Given) -> Input:
+    """Read what all runs share; a hanger is a mass. Raises SceneError."""
+    try:
+        read = read_input("m1" if name == "hanger" else name, value)
+    except SceneError as error:
+        raise SceneError(name, value, error.rule) from None
+    if name in (*MASSES, "hanger") and read.uncertainty:
+        raise SceneError(
+            name, value, "has an uncertainty, which no mass of all runs may have; state it in cells"
+        )
+    return read

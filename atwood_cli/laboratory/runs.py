@@ -4,24 +4,33 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
+from shlex import quote
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..numbers.digits import ALL_DIGITS
-from ..numbers.text import in_quotes
-from ..solver.scene import INPUTS, Input, SceneError
+from ..numbers.text import in_quotes, shortened
+from ..solver.scene import INPUTS, MASSES, Input, InTerms, SceneError, parameter_of
 from ..tables.headings import (
+    EMPTY,
+    LONGEST_HEADING,
+    MASS_NAMES,
+    OF_COLUMN_BEFORE,
+    OWN_UNIT,
     Heading,
     Vocabulary,
     decimal_commas_in,
+    is_unit,
     listed,
+    name_before_uncertainty,
     read_as,
     read_cell,
     read_headings,
     recognised,
     refused,
+    unit_within,
 )
 from ..tables.sheets import Sheet, sheet_of
 from ..tables.sources import Unreadable
@@ -33,15 +42,26 @@ Kind = Literal["a", "time"]
 MEASURED = {"a": "acceleration", "time": "time"}
 """The quantities that are measured, which may be repeated in further columns."""
 WORDS = {"m1": "m1", "m2": "m2", "drop": "drop h height", "a": "a acceleration", "time": "t time"}
-"""The quantities of a run, by the words of headings; all others are the same in all runs."""
-SPELLINGS = {word: name for name, words in WORDS.items() for word in words.split()}
+"""The quantities of a run, by the words of headings."""
+CONDITIONS = {"M": "M", "g": "g", "inertia": "inertia", "I": "I", "R": "R radius", "axle": "axle"}
+"""The quantities that are the same in all runs: options, or columns with one number in all rows."""
+SPELLINGS = {word: name for name, words in {**WORDS, **CONDITIONS}.items() for word in words.split()}
 SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
-VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
+VOCABULARY = Vocabulary(MASS_NAMES | SPELLINGS, repeated=MEASURED, uncertain=True)
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
 NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
-HEAVY = 10
-"""The mass (kg) above which a laboratory may have left out a unit."""
+LIKE_MASS = re.compile(
+    r"(?:\b|_)(?:m\d*|mass\w*|masas?|масс\w*|gewicht\w*|weights?|hangers?|(?:over|pay)?load|rider|beban|peso|poids"
+    r"|\w*груз\w*)(?:\b|_)",
+    re.IGNORECASE,
+)
+LARGE = {"m1": ("masses", "0.5", "g"), "m2": ("masses", "0.5", "g"), "drop": ("heights of fall", "10", "cm")}
+LARGE |= {"time": ("times", "1000", "ms")}
+"""The numbers, in SI units, from which a laboratory may have left out this unit."""
+CART = 5
+"""The ratio of m1 to each m2 above which m1 may be a cart, or a cylinder that is turned."""
+ZERO = re.compile(r"[+-]?0+([.,]0*)?( ?[^\W\d_]+)?|")
 MEASURABLE = 1e-30, 1e30
 OUT_OF_RANGE = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
 
@@ -52,7 +72,8 @@ class Runs(NamedTuple):
     Columns of runs (n): ``given`` has m1 and m2 (kg), and drop (m) if times were measured, ``u`` their
     uncertainties; ``rows`` are the numbers of their rows, ``mean`` is that of the values. Columns of
     measurements: ``values`` as typed (m/s² or s), ``u_values`` (0 if no uncertainty is stated), the ``run``
-    of each, and ``cells``, where they stand: 8:t2. ``step`` is that of the last digit of any value.
+    of each, and ``cells``, where they stand: 8:t2. ``step`` is that of the last digit of any value. ``same``
+    are conditions that the table has, the same in all rows.
     """
 
     kind: Kind
@@ -67,6 +88,7 @@ class Runs(NamedTuple):
     cells: Sequence[str]
     step: float
     remarks: Sequence[str] = ()
+    same: Mapping[str, Input] = {}
 
     @property
     def sign(self) -> Column:
@@ -76,7 +98,7 @@ class Runs(NamedTuple):
 
     def rows_in_words(self, *runs: int) -> str:
         """Return the rows of these runs for a sentence: row 1, or rows 1, 2."""
-        rows = [str(row) for i in runs for row in self.rows[i]]
+        rows = [str(row) for row in sorted(row for i in runs for row in self.rows[i])]
         return f"row{'s' if rows[1:] else ''} {', '.join(rows)}"
 
 
@@ -90,58 +112,114 @@ RowsOfRuns = dict[tuple[tuple[str, Number], ...], tuple[list[int], Numbers]]
 def read_runs(
     source: Any,
     labels: Collection[str] = (),
-    drop: Input | None = None,
+    given: Mapping[str, Input] = {},
     without: Collection[int | str] = (),
     named: Mapping[str, str] = {},
+    sheet_name: str | None = None,
 ) -> Runs:
     """Return the runs of a table; rows that differ only in what was measured are one run.
 
-    ``source`` is the path of a CSV or .tsv file, "-" for stdin, or columns by their headings: a mapping or a
-    data frame. ``labels`` are headings that belong to no run, ``named`` maps headings to what they mean, and
-    ``drop`` is the height of fall of all runs. Rows ``without``, by numbers from 1, and their cells, as 8:t2,
-    are left out. Raises Unreadable if it is no table of runs, SceneError for what does not fit the table.
+    ``source`` is the path of a file, with the name of its sheet, "-" for stdin, or columns by their headings.
+    ``labels`` are headings that belong to no run, and ``named`` maps headings to what they mean. ``given``
+    has what all runs share, such as m1 or drop, and perhaps a hanger, which columns of masses leave out.
+    Rows ``without``, by their numbers, and their cells, as 8:t2, are left out. Raises Unreadable if it is no
+    table of runs, SceneError for what does not fit the table.
     """
-    sheet = sheet_of(source, VOCABULARY, named)
-    headings = read_headings(sheet.columns, VOCABULARY, labels, named)
-    kind: Kind = "a" if any(heading.name == "a" for heading in headings) else "time"
-    if kind == "a":  # a height has no effect
-        labels = [*labels, *(one.u.column for one in headings if one.name == "drop" and one.u)]
-        headings = [one for one in headings if one.name != "drop"]
+    sheet = sheet_of(source, VOCABULARY, named, sheet_name)
+    headings = _headings(sheet, labels, named)
+    numbers = _numbers_of_rows(sheet, headings)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
-    others = _others(sheet, places, labels)
-    _check(sheet, headings, others, drop)
+    unread: Unread = {}
+    for place, (column, *cells) in enumerate(zip(sheet.columns, *sheet.rows, strict=True)):
+        is_known = place in places or column in labels or (numbers and not place)
+        if not is_known and (cell := next(filter(LIKE_NUMBER.match, cells), "")):
+            unread[place] = column, cell
+    kind = _check(sheet, headings, unread, given, named)
+    if kind == "a":  # a height has no effect
+        headings = [heading for heading in headings if heading.name != "drop"]
+    others = _others(headings, unread, named)
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
-    labelled = [f"{in_quotes(column)} as a label" for column in others]
-    remarks = read_as(headings, sheet.separator, comma, [*labelled, *sheet.remarks])
-    shared = {"drop": (drop.value, Fraction(0))} if drop else {}  # its uncertainty counts for all together
-    runs = RowsOfRuns()
-    for number, row in enumerate(sheet.rows, 1):
-        given, measured = _read_row(number, row, headings, comma)
+    words = [f"{in_quotes(sheet.columns[0])} as the numbers of rows"] if numbers else []
+    words += [f"{in_quotes(column)} as a label" for column in others]
+    hanger = given.get("hanger")
+    if hanger:
+        sides = " and ".join(heading.name for heading in headings if heading.name in MASSES)
+        words.append(f"{shortened(str(hanger.given))} of hanger added to {sides}")
+    own_units = [all(row[x] in EMPTY or OWN_UNIT.search(row[x]) for row in sheet.rows) for x in places]
+    with_units = [place for place, own in zip(places, own_units, strict=True) if own]
+    remarks = read_as(headings, sheet.separator, comma, [*words, *sheet.remarks], with_units)
+    by = {x: given[x].value for x in ("R", "g") if x in given and not given[x].uncertainty}
+    # The uncertainty of what is shared counts for all runs together.
+    shared = {x: (_in_own_terms(given[x], by), Fraction(0)) for x in (*MASSES, "drop") if x in given}
+    large = {LARGE["drop"]} if "drop" in given and _is_large("drop", given["drop"], "") else set()
+    same, runs, traces = dict[str, Input](), RowsOfRuns(), list[int]()
+    numbers = numbers or list(range(1, len(sheet.rows) + 1))
+    for number, row in zip(numbers, sheet.rows, strict=True):
+        if _begins_trace(row, headings):
+            traces.append(number)
+            continue
+        inputs, measured = dict[str, Number](), Numbers()
+        for heading, cell in _read_row(number, row, headings, comma, by):
+            if _is_large(heading.name, cell, heading.unit):
+                large.add(LARGE[heading.name])
+            if heading.name in MEASURED:
+                measured[f"{number}:{heading.name[0]}{heading.number}"] = cell[:2]
+            elif heading.name not in CONDITIONS:
+                extra = _in_own_terms(hanger, by) if hanger and heading.name in MASSES else 0
+                inputs[heading.name] = cell.value + extra, cell.uncertainty
+            elif same.setdefault(heading.name, cell)[:2] != cell[:2]:
+                why = f"differs between rows; a fit takes one {heading.name}, so fit the rows of each apart"
+                raise refused(heading.column, why)
         if measured:
-            rows, cells = runs.setdefault(tuple({**given, **shared}.items()), ([], {}))
+            rows, measurements = runs.setdefault(tuple({**inputs, **shared}.items()), ([], {}))
             rows.append(number)
-            cells.update(measured)
+            measurements.update(measured)
         else:
             remarks.append(f"row {number} has no {kind}: it is not used.")
+    if traces:
+        rows_ = f"row{'s' if traces[1:] else ''} {', '.join(map(str, traces))}"
+        remarks.append(f"{rows_}: not used, as the height and the time are 0.")
     if not runs:
         raise Unreadable(f"it has no runs{behind_an_error(remarks)}")
-    words = [*map(str, without)]
-    if words:
-        remarks.append(f"left out, as asked: {', '.join(map(in_words, words))}.")
-    found = _as_columns(kind, runs, len(sheet.rows), words)
-    if max(found.given["m1"].max(), found.given["m2"].max()) > HEAVY:
+    left_out = [*map(str, without)]
+    if left_out:
+        remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
+    for what, least, unit in sorted(large):
+        name = next(name for name in LARGE if LARGE[name][0] == what)
+        size = f"some {what} are {least} {parameter_of(name).unit} or more"
+        remarks.append(f"{size}; if they are in {unit}, say so, as in {name} ({unit}).")
+    found = _as_columns(kind, runs, numbers, left_out)
+    fixed, hanging = (sorted(found.given[mass], reverse=mass == "m2") for mass in MASSES)
+    if fixed[0] == fixed[-1] > CART * hanging[0]:
         remarks.append(
-            f"some masses are above {HEAVY} kg; if they are in g, add that to both headings, as in m1 (g)."
+            f"m1 is {fixed[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1."
         )
-    return found._replace(remarks=remarks)
+    return found._replace(remarks=remarks, same=same)
 
 
-def _as_columns(kind: Kind, runs: RowsOfRuns, count: int, words: Sequence[str]) -> Runs:
+def _in_own_terms(shared: Input, by: Mapping[str, Any]) -> Any:
+    """Return what all runs share, converted by R or g if it is in other terms. Raises SceneError."""
+    if not isinstance(shared.value, InTerms):
+        return shared.value
+    number, terms = shared.value
+    if terms.by not in by:
+        raise SceneError("hanger", shared.given, f"is {terms.words}; give a mass, in kg")
+    return terms.own(number, by[terms.by])
+
+
+def _is_large(name: str, cell: Input, unit: str) -> bool:
+    """Decide whether a number may be in a smaller unit that its heading and its cell leave out."""
+    has_unit = unit or OWN_UNIT.search(str(cell.given))
+    return name in LARGE and not has_unit and bool(cell.value >= Fraction(LARGE[name][1]))
+
+
+def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Sequence[str]) -> Runs:
     """Return runs without the rows and cells of these words, unless all of a run are left out."""
     measured = [cells for _, cells in runs.values()]
-    there = {*map(str, range(1, count + 1)), *(cell for cells in measured for cell in cells)}
+    there = {*map(str, numbers), *(cell for cells in measured for cell in cells)}
     if absent := [word for word in words if word not in there]:
-        rule = f"is neither a row, 1 to {count}, nor a measurement, as {next(iter(measured[0]))}"
+        rows = f"{numbers[0]} to {numbers[-1]}"
+        rule = f"is neither a row, {rows}, nor a measurement, as {next(iter(measured[0]))}"
         raise SceneError("without", absent[0], rule)
     kept = [{x: cells[x] for x in cells if {x, x.split(":")[0]}.isdisjoint(words)} for cells in measured]
     used = [some or cells for some, cells in zip(kept, measured, strict=True)]
@@ -174,53 +252,117 @@ def behind_an_error(remarks: Sequence[str]) -> str:
 
 # Headings
 
-
-def _others(sheet: Sheet, places: Collection[int], labels: Collection[str]) -> list[str]:
-    """Return the columns of numbers that hold no quantity, unless they are ``labels``.
-
-    Raises Unreadable for one that could hold a quantity.
-    """
-    others: list[str] = []
-    for place, (column, *cells) in enumerate(zip(sheet.columns, *sheet.rows, strict=True)):
-        if place in places or column in labels or not any(map(LIKE_NUMBER.match, cells)):
-            continue
-        if column in INPUTS:
-            option = column.replace("_", "-")
-            raise refused(column, "holds for all runs, so it is an option", f": give --{option}")
-        if not column.strip():
-            raise refused(column, "has numbers and no heading; give it one")
-        if LIKE_UNCERTAINTY.search(column):
-            raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
-        others.append(column)
-    return others
+Unread = dict[int, tuple[str, str]]
+"""Columns of numbers that are not read, by their places: the heading, and the first number."""
 
 
-def _check(sheet: Sheet, headings: Sequence[Heading], others: Sequence[str], drop: Input | None) -> None:
-    """Check that runs have all columns, and times or accelerations. Raises Unreadable, SceneError."""
+def _headings(sheet: Sheet, labels: Collection[str], named: Mapping[str, str]) -> list[Heading]:
+    """Return the columns that hold a quantity. Raises Unreadable, also for tables side by side."""
+    known = [x for x in recognised(sheet.columns, VOCABULARY, named) if x not in (*labels, *OF_COLUMN_BEFORE)]
+    if len(twice := [x for x in dict.fromkeys(known) if known.count(x) > 1]) > 1:
+        raise Unreadable(f"tables stand side by side, with {listed(twice)} in each; put one below the other")
+    return read_headings(sheet.columns, VOCABULARY, labels, named)
+
+
+def _numbers_of_rows(sheet: Sheet, headings: Sequence[Heading]) -> list[int]:
+    """Return the numbers of rows as the first column has them; none if it has others, or a quantity."""
+    cells = [row[0].strip() for row in sheet.rows]
+    is_read = any(heading.place == 0 for heading in headings)
+    if is_read or not all(re.fullmatch("[0-9]{1,9}", cell) for cell in cells):
+        return []
+    numbers = [*map(int, cells)]
+    return numbers if numbers == sorted({*numbers}) else []
+
+
+def _check(
+    sheet: Sheet,
+    headings: Sequence[Heading],
+    unread: Unread,
+    given: Mapping[str, Input],
+    named: Mapping[str, str],
+) -> Kind:
+    """Return what was measured, if runs have all columns. Raises Unreadable, SceneError."""
     names = {heading.name for heading in headings}
     kinds = {(bool(one.number), one.name): one.column for one in headings if one.name in MEASURED}
     if len(kinds) > 1:
         column, beside, *_ = (kinds[kind] for kind in sorted(kinds))
         why = "may be computed, as a mean is; number repeats, as t1, t2"
         raise refused(column, f"stands beside {in_quotes(beside)} and {why}")
-    missing = [name for name in ("m1", "m2") if name not in names]
-    if not kinds:
-        missing.append("t")
+    typed = [x for x in given if given[x].given is not None]
+    has = {x: "a" if x == "drop" and "a" in names else x for x in typed}
+    if double := [x for x in has if has[x] in names]:
+        rule = f"is not needed, as the table has {has[double[0]]}; leave it out"
+        raise SceneError(double[0], given[double[0]].given, rule)
+    missing = [name for name in MASSES if name not in names and name not in given]
+    missing += [] if kinds else ["t"]
+    missing += [] if {"a", "drop"} & {*names, *given} else ["drop"]
     if missing:
-        raise Unreadable(*_missing(missing, sheet, others))
-    if drop is None and not names & {"a", "drop"}:
-        raise Unreadable("the height of fall is missing: give drop, or a column of that name")
-    if drop is not None and (has := names & {"a", "drop"}):
-        raise SceneError("drop", drop.given, f"is not needed, as the table has {min(has)}; leave it out")
+        raise Unreadable(*_missing(missing, sheet, unread, named))
+    return "a" if "a" in names else "time"
 
 
-def _missing(missing: Sequence[str], sheet: Sheet, others: Sequence[str]) -> tuple[str, str]:
+def _missing(
+    missing: Sequence[str], sheet: Sheet, unread: Unread, named: Mapping[str, str]
+) -> tuple[str, str]:
     """Return which columns runs need, those of the table, and options that name what is missing."""
-    said = f"runs need columns m1, m2, and t or a; there are {listed(sheet.columns)}"
-    if all(map(LIKE_NUMBER.match, others)) or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
-        return f"{said}; make each run a row, below headings, as m1 (g),m2 (g),t (s)", ""
-    repeats = ", and likewise each repeat" if "t" in missing else ""
-    return said, f"; name them, as {' '.join(f'--column {name}=HEADING' for name in missing)}{repeats}"
+    left, ways, lacking = [*unread.values()], dict(named), list[str]()
+    options = list[str]()
+    for name in missing:
+        if name == "drop" and "a" in lacking:
+            continue
+        fitting = _fitting(name, left)
+        if not fitting and name == "t" and (fitting := _fitting("a", left)):
+            name = "a"
+        fitting = fitting if name in ("t", "a") else fitting[:1]
+        left = [column for column in left if column not in fitting]
+        ways |= {column: name for column, _ in fitting}
+        lacking.append(name)
+        if not fitting:
+            alone = (
+                f"--{name} 0"
+                if name in MASSES and not left and missing.count("m1") + missing.count("m2") == 1
+                else ""
+            )
+            option = "--drop HEIGHT" if name == "drop" else f"--column {name}=HEADING"
+            options.append(alone or option)
+    options = [f"--column {quote(f'{name}={column}')}" for column, name in ways.items()] + options
+    why = f"runs need m1, m2, and a, or t with the height of fall, drop; there are {listed(sheet.columns)}"
+    why += f"; {', '.join(lacking)} {'are' if lacking[1:] else 'is'} missing"
+    is_turned = unread and all(LIKE_NUMBER.match(column) for column, _ in unread.values())
+    if is_turned or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
+        return f"{why}: make each run a row, below headings, as m1 (g),m2 (g),t (s)", ""
+    or_none = ", or --m1 0 if m2 alone hangs" if "--column m1=HEADING" in options else ""
+    return why, f"; give {' '.join(options)}{or_none}"
+
+
+def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return the unread columns that may hold a quantity, by name, or by their unit or that of a cell."""
+    meaning = Heading(0, "", SPELLINGS[name])
+    by_name = [one for one in unread if name_before_uncertainty(one[0], VOCABULARY) == meaning.name]
+    by_unit = [
+        one
+        for one in unread
+        if is_unit(unit_within(one[0], meaning), meaning) or is_unit(one[1].lstrip("0123456789., "), meaning)
+    ]
+    return by_name or by_unit
+
+
+def _others(headings: Sequence[Heading], unread: Unread, named: Mapping[str, str]) -> list[str]:
+    """Return the columns of numbers that are labels. Raises Unreadable for one that could hold a quantity."""
+    measured = {heading.place for heading in headings if heading.name in MEASURED}
+    measured -= {heading.place for heading in headings if heading.column in named}
+    for place, (column, _) in unread.items():
+        unit = unit_within(column, Heading(0, column, "m1"))
+        if column in INPUTS:
+            raise refused(column, "has no effect on a fit")
+        if not column.strip() and place - 1 in measured:
+            raise refused(column, "has numbers and no heading, behind a measurement; give it one")
+        if LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING]):
+            raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
+        if is_unit(unit, Heading(0, column, "m1")) if unit else LIKE_MASS.search(column[:LONGEST_HEADING]):
+            way = ", or give it as --hanger if it hangs on both sides"
+            raise refused(column, "looks like a mass that is not read; add it to m1 or m2", way)
+    return [column for column, _ in unread.values()]
 
 
 # Rows
@@ -238,22 +380,34 @@ def in_range(one: Input) -> bool:
     return all(low <= abs(size) <= high for size in sizes if size)
 
 
+def _begins_trace(row: Sequence[str], headings: Sequence[Heading]) -> bool:
+    """Decide whether a row has a height and a time of 0, as where a trace of positions begins."""
+    cells = [(heading.name, row[heading.place].strip()) for heading in headings]
+    zeros = {name for name, cell in cells if ZERO.fullmatch(cell)}
+    return {"drop", "time"} <= zeros and all(
+        ZERO.fullmatch(cell) for name, cell in cells if name in ("drop", "time")
+    )
+
+
 def _read_row(
-    number: int, row: Sequence[str], headings: Sequence[Heading], comma: bool
-) -> tuple[Numbers, Numbers]:
-    """Return what a row gives, by the quantity, and measures, by the cell. Raises Unreadable."""
-    given, measured = Numbers(), Numbers()
-    for heading in headings:
+    number: int, row: Sequence[str], headings: Sequence[Heading], comma: bool, by: Mapping[str, Any]
+) -> list[tuple[Heading, Input]]:
+    """Return the cells of a row that are not empty, as measurements may be. Raises Unreadable.
+
+    Numbers in other terms are converted ``by`` R or g, or by that of the row.
+    """
+    cells: list[tuple[Heading, Input]] = []
+    by = {**by}
+    for heading in sorted(headings, key=lambda heading: heading.name not in CONDITIONS):
         try:
-            one = read_cell(heading, row, comma)
-            if not one and heading.name not in MEASURED:
+            cell = read_cell(heading, row, comma, None if heading.name in CONDITIONS else by)
+            if not cell and heading.name not in MEASURED:
                 raise SceneError(heading.name, None, "is missing; write it in each row")
-            if one and not in_range(one):
-                raise SceneError(heading.name, one.given, OUT_OF_RANGE)
+            if cell and not in_range(cell):
+                raise SceneError(heading.name, cell.given, OUT_OF_RANGE)
         except SceneError as error:
             raise Unreadable(f"row {number}: {error}; {NO_RUN}") from None
-        if one and heading.name in MEASURED:
-            measured[f"{number}:{heading.name[0]}{heading.number}"] = one[:2]
-        elif one:
-            given[heading.name] = one[:2]
-    return given, measured
+        if cell:
+            cells.append((heading, cell))
+            by |= {heading.name: cell.value} if heading.name in CONDITIONS else {}
+    return cells

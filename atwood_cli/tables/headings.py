@@ -1,8 +1,10 @@
 """One grammar of headings, for tables of runs and of scenes; each brings its vocabulary.
 
-A heading is `name [number] [(unit) | [unit] | /unit | in unit]`: m1, "m1 (g)", "time 2 [s]", a/(m/s²).
-A column of uncertainties is u(name) or name_err, or ± behind the column of the quantity; a unit may follow.
-Blanks and underscores in names do not count. The user names others, as by --column t='Fallzeit (s)'.
+A heading is `name [number]`, and perhaps a unit: `(unit)`, `[unit]`, `/unit`, `in unit`, or behind a comma, a
+blank or an underscore: m1, "m1 (g)", "time 2 [s]", a/(m/s²), "h, cm". A column of uncertainties is u(name)
+or name_err, or ± behind the column of the quantity; a unit may follow. Blanks and underscores in names do not
+count. The user names others, as by --column t='Fallzeit (s)'. What a heading says is used, or named in the
+line "read as", or refused with what to type.
 """
 
 import csv
@@ -13,12 +15,12 @@ from fractions import Fraction
 from io import StringIO
 from itertools import islice
 from shlex import quote
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from unicodedata import normalize
 
 from ..numbers.text import in_quotes, without_blanks
 from ..reading.inputs import read_input
-from ..reading.units import PERCENT, Malformed, read_unit, terms_of
+from ..reading.units import PERCENT, Malformed, read_unit, symbol_of, terms_of
 from ..solver.scene import Input, InTerms, SceneError, Terms, parameter_of
 from .sources import Unreadable
 
@@ -28,8 +30,15 @@ EMPTY = ("", "NA", "NULL", "null")
 """The texts of cells without a number: R and databases write a word."""
 LONGEST_HEADING = 80
 """The most characters of a heading that has a unit: the patterns take long for long texts."""
-DIVIDED = (r"(.+?)[ /]*[(\[]([^()\[\]]*)[)\]]", r"([^/]+?) ?(?:/| in ) ?(.+)")
+SIGN = r"(?:±|\+/?-)"
+BRACKET = r"[(\[]([^()\[\]]*)[)\]]"
+DIVIDED = (rf"(.+?)[ /]*{BRACKET}", r"([^/]+?) ?(?:/| in ) ?(.+)")
 """The patterns of a name with its unit: m1 (g), m1 [g], a/(m/s²); m1/g, m1 in g."""
+LIKE_UNIT = re.compile(r"\w ?/ ?\w|\^|[²³]|s-[12]$")
+"""The signs of a unit in brackets, also of one that is not known."""
+MASS_WORDS = "M m mass Mass masse Masse masa Masa massa Massa масса Масса".split()
+MASS_NAMES = {f"{word}{number}": f"m{number}" for word in MASS_WORDS for number in (1, 2)}
+"""The masses by names that can mean nothing else, without blanks."""
 UNCERTAINTY = re.compile(r"u ?\((.+)\)|(.+?)[ _]err")
 OF_COLUMN_BEFORE = ("±", "+/-")
 """The names of columns that hold the uncertainties of the column before."""
@@ -43,21 +52,19 @@ class Vocabulary(NamedTuple):
     """The quantities that columns may hold.
 
     ``names`` maps each spelling, without blanks and underscores, to a parameter of the model. A quantity in
-    ``repeated`` may have several columns, with numbers. Columns of uncertainties are known if ``uncertain``,
-    and units of other terms, as those of weights, if ``in_terms``.
+    ``repeated`` may have several columns, with numbers. Columns of uncertainties are known if ``uncertain``.
     """
 
     names: Mapping[str, str]
     repeated: Collection[str] = ()
     uncertain: bool = False
-    in_terms: bool = False
 
 
 class Heading(NamedTuple):
     """A column that holds a quantity: its place, its heading, the unit of its cells, that unit in SI units.
 
     ``number`` tells several columns of the quantity apart. ``u`` is the column of its uncertainties, which is
-    ``uncertain``; without a name it belongs to the column before.
+    ``uncertain``; without a name it belongs to the column before. ``stated`` is an uncertainty of all cells.
     """
 
     place: int
@@ -69,6 +76,7 @@ class Heading(NamedTuple):
     u: "Heading | None" = None
     uncertain: bool = False
     terms: Terms | None = None
+    stated: str = ""
 
 
 # Headings
@@ -110,9 +118,8 @@ def read_headings(
             one, other = (same.column, column) if column in named else (column, same.column)
             why = f"holds {found.name}, as {in_quotes(other)} does; {way}"
             raise refused(one, why) if one != other else Unreadable(f"column {in_quotes(one)} {why}")
-        terms = terms_of(parameter_of(found.name), found.unit) if vocabulary.in_terms else None
-        factor = unit_factor(found.name, found.unit, column, vocabulary.in_terms)
-        headings[key] = found._replace(number=key[1], factor=factor, terms=terms)
+        terms = terms_of(parameter_of(found.name), found.unit)
+        headings[key] = found._replace(number=key[1], factor=unit_factor(found), terms=terms)
     for found in uncertain:
         _add_uncertainty(headings, found)
     return list(headings.values())
@@ -128,14 +135,15 @@ def best_header(
 ) -> tuple[int, int, int]:
     """Count the known headings and the cells of a table's header by this separator, and the rows above it.
 
-    It is the first row with two ``known`` headings, or else the first row.
+    It is the first row with two ``known`` headings, or else with most words.
     """
-    counts = [(0, 0, 0)]
+    counts, words = [(0, 0, 0)], [-1]
     with suppress(csv.Error):
         rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
         for above, row in enumerate(islice(rows, most_above + 1)):
             counts.append((len(known(row)), len(row), above))
-    return next((count for count in counts if count[0] > 1), counts[:2][-1])
+            words.append(sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row))
+    return next((count for count in counts if count[0] > 1), counts[words.index(max(words))])
 
 
 def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
@@ -154,21 +162,71 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
 
 def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Heading | None:
     """Return what a column holds, without its place and factor; None if the heading is not known."""
-    for word, unit in divisions(without_blanks(named.get(column, column))):
-        if meaning := _named(word, vocabulary):
-            if column in named and not unit:  # the heading itself may have a unit
-                *_, (_, unit) = divisions(without_blanks(column))
-            return meaning._replace(column=column, unit=unit)
+    for word, unit, is_loose in divisions(without_blanks(named.get(column, column))):
+        meaning = _named(word, vocabulary)
+        if meaning and not (is_loose and not is_unit(unit, meaning)):
+            if column in named and not unit:
+                unit = unit_within(column, meaning)
+            if unit in NO_UNIT or _is_symbol(unit, meaning, vocabulary):
+                unit = ""
+            is_short = column in named and len(column) <= LONGEST_HEADING
+            stated = re.search(rf"{SIGN}\s*([\d.,]*\d ?%?)", column) if is_short else None
+            if stated and not vocabulary.uncertain:
+                raise refused(column, "states an uncertainty, which only solve and fit take")
+            return meaning._replace(column=column, unit=unit, stated=stated[1] if stated else "")
     return None
 
 
-def divisions(text: str) -> Iterator[tuple[str, str]]:
-    """Yield the ways to read a heading as a name and a unit, first as a name alone."""
-    yield text, ""
-    found = (re.fullmatch(pattern, text) for pattern in DIVIDED if len(text) <= LONGEST_HEADING)
-    if match := next(filter(None, found), None):
-        unit = match[2].strip()
-        yield match[1].strip(), "" if unit in NO_UNIT else unit
+def divisions(text: str) -> Iterator[tuple[str, str, bool]]:
+    """Yield the ways to read a heading as a name and a unit, first as a name alone.
+
+    What stands loosely, behind a blank or an underscore, may be a unit or a part of the name.
+    """
+    yield text, "", False
+    if len(text) <= LONGEST_HEADING:
+        if match := next(filter(None, (re.fullmatch(pattern, text) for pattern in DIVIDED)), None):
+            yield match[1].strip(), match[2].strip(), False
+        for mark in re.finditer("[, _]+", text):
+            yield text[: mark.start()], text[mark.end() :], "," not in mark[0]
+
+
+def unit_within(column: str, meaning: Heading) -> str:
+    """Return the unit in a heading that the user has named; brackets without a unit are a part of the name.
+
+    A unit of another dimension, which is refused then, counts if there is none of the quantity.
+    """
+    column = column if len(column) <= LONGEST_HEADING else ""
+    bare = without_blanks(re.sub(BRACKET, "", column))
+    units = [(unit.strip(), False) for unit in reversed(re.findall(BRACKET, column))]
+    units += [(unit, is_loose) for _, unit, is_loose in divisions(bare)]
+    fitting = [unit for unit, _ in units if is_unit(unit, meaning)]
+    others = [
+        unit for unit, is_loose in units if not is_loose and (symbol_of(unit) or LIKE_UNIT.search(unit))
+    ]
+    return next(iter([*fitting, *others]), "")
+
+
+def name_before_uncertainty(column: str, vocabulary: Vocabulary) -> str:
+    """Return the quantity of a column of numbers with uncertainties, as m1 of (m1 ± Δm1) (g), or ""."""
+    before = re.match(rf"\W*(.+?)\s*{SIGN}", column[:LONGEST_HEADING])
+    meaning = before and _named(before[1], vocabulary)
+    return meaning.name if meaning else ""
+
+
+def is_unit(unit: str, meaning: Heading) -> bool:
+    """Decide whether a text is a unit of the quantity; of uncertainties also percent, or of any quantity."""
+    if meaning.uncertain and (unit == PERCENT or not meaning.name):
+        return unit == PERCENT or bool(symbol_of(unit))
+    if dimension := parameter_of(meaning.name).dimensions:
+        with suppress(Malformed):
+            return bool(read_unit(unit, dimension))
+    return False
+
+
+def _is_symbol(unit: str, meaning: Heading, vocabulary: Vocabulary) -> bool:
+    """Decide whether what looks like a unit is the symbol of the quantity, as in time (t) or Mass (m)."""
+    is_name = meaning.name and (unit == meaning.name[0] or vocabulary.names.get(unit) == meaning.name)
+    return bool(is_name) and not is_unit(unit, meaning)
 
 
 def _named(word: str, vocabulary: Vocabulary) -> Heading | None:
@@ -196,17 +254,19 @@ def _add_uncertainty(headings: dict[tuple[str, str], Heading], found: Heading) -
         if own.u:
             raise refused(found.column, f"is a second uncertainty of {own.name}")
         plain = found.unit in ("", PERCENT)
-        factor = own.factor if plain else unit_factor(own.name, found.unit, found.column)
+        if not plain and terms_of(parameter_of(own.name), found.unit) != own.terms:
+            raise refused(found.column, f"has another kind of unit than {in_quotes(own.column)}")
+        factor = own.factor if plain else unit_factor(found._replace(name=own.name))
         u = found._replace(name=own.name, number=own.number, factor=factor)
         headings[own.name, own.number] = own._replace(u=u)
 
 
-def unit_factor(name: str, unit: str, column: str, in_terms: bool = False) -> Fraction:
+def unit_factor(heading: Heading) -> Fraction:
     """Return the factor from the unit of a column to SI units, or to degrees. Raises Unreadable."""
+    name, unit, column = heading.name, heading.unit, heading.column
     if not unit:
         return ONE
-    parameter = parameter_of(name)
-    dimension = parameter.dimensions if in_terms else parameter.dimension
+    dimension = parameter_of(name).dimensions
     try:
         if not dimension:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
@@ -214,7 +274,8 @@ def unit_factor(name: str, unit: str, column: str, in_terms: bool = False) -> Fr
             raise Malformed("has angles in radians; give degrees or turns")
         return read_unit(unit, dimension)
     except Malformed as error:
-        raise Unreadable(f"column {in_quotes(column)} {error}; rename it") from None
+        way = f", or give --column {quote(f'{name} (UNIT)={column}')}" if dimension else ""
+        raise refused(column, f"{error}; rename it", way) from None
 
 
 def refused(column: str, why: str, way: str = "") -> Unreadable:
@@ -231,18 +292,37 @@ def listed(names: Sequence[str]) -> str:
 
 
 def read_as(
-    headings: Iterable[Heading], separator: str, comma: bool, others: Iterable[str] = ()
+    headings: Iterable[Heading],
+    separator: str,
+    comma: bool,
+    others: Iterable[str] = (),
+    with_units: Collection[int] | None = None,
 ) -> list[str]:
-    """Return a line that says how a table was read; none if there is nothing to say."""
+    """Return a line that says how a table was read; none if there is nothing to say.
+
+    It names the units of columns, those that are assumed, too. The cells of places ``with_units`` have their
+    own; if this is not known (None), or no column has another heading, those headed by their own name are
+    left out.
+    """
+    columns = {own.place: (own.column, own.name, own.unit) for own in headings}
+    columns |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit) for own in headings if own.u}
+    given, assumed = dict[str, list[str]](), dict[str, list[str]]()
+    has_all = with_units is not None and any(column != name for column, name, _ in columns.values())
+    for place, (column, name, unit) in sorted(columns.items()):
+        is_open = not unit and "(" not in name and place not in (with_units or ())
+        usual = parameter_of(name).unit if is_open else ""
+        if column != name or (usual and has_all):
+            words = f" as {name}" if column != name else ""
+            words += f" in {unit or usual}" if unit or usual else ""
+            (assumed if usual else given).setdefault(words, []).append(in_quotes(column))
     parts = ["cells separated by semicolons"] if separator == ";" else []
     parts += ["decimal commas"] if comma else []
-    read = {own.place: (own.column, own.name, own.unit) for own in headings}
-    read |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit) for own in headings if own.u}
-    for _, (column, name, unit) in sorted(read.items()):
-        if column != name:
-            parts.append(f"{in_quotes(column)} as {name}{f' in {unit}' if unit else ''}")
-    parts += others
-    return [f"read as: {', '.join(parts)}."] if parts else []
+    parts += [f"{', '.join(names)}{words}" for words, names in given.items()] + [*others]
+    said = [", ".join(parts)] if parts else []
+    if assumed:
+        each = ", ".join(f"{', '.join(names)}{words}" for words, names in assumed.items())
+        said.append(f"{each}, as no unit is given")
+    return [f"read as: {'; '.join(said)}."] if said else []
 
 
 # Cells
@@ -266,10 +346,13 @@ def pointed(name: str, cell: str, comma: bool) -> str:
     return (cell.replace(",", ".") if comma else cell).strip()
 
 
-def read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:
+def read_cell(
+    heading: Heading, row: Sequence[str], comma: bool, by: Mapping[str, Any] | None = None
+) -> Input | None:
     """Return the number in a column, exact and in SI units, with its uncertainty; None if the cell is empty.
 
-    A unit in the cell goes before the unit of the heading. Raises SceneError.
+    A unit in the cell goes before the unit of the heading. A number in other terms, as a weight, is converted
+    ``by`` R or g, or else stays in its terms. Raises SceneError.
     """
     cell = row[heading.place]
     text = pointed(heading.name, cell, comma)
@@ -279,16 +362,24 @@ def read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None
         value, uncertainty, _ = read_input(heading.name, text)
     except SceneError as error:
         raise SceneError(heading.name, cell, error.rule) from None
+    terms, factor = (None, ONE) if OWN_UNIT.search(text) else (heading.terms, heading.factor)
     if isinstance(value, InTerms):
-        raise SceneError(
-            heading.name, cell, f"is {value.terms.words}; give it in {parameter_of(heading.name).unit}"
-        )
-    factor = ONE if OWN_UNIT.search(text) else heading.factor
+        value, terms = value
     value, uncertainty = value * factor, uncertainty * factor
     if heading.u and (u := row[heading.u.place].strip()) not in EMPTY:
         if uncertainty:
             raise SceneError(heading.u.column, u, f"is a second uncertainty, beside {in_quotes(cell)}")
         uncertainty = _read_uncertainty(heading.u, u, value, comma)
+    elif heading.stated and not uncertainty:
+        stated = heading._replace(unit="")
+        uncertainty = _read_uncertainty(stated, heading.stated.replace(",", "."), value, False)
+    if terms and by is None:
+        return Input(InTerms(value, terms), uncertainty, cell)
+    if terms and by is not None:
+        if terms.by not in by:
+            rule = f"is {terms.words}, which needs {terms.by} without an uncertainty"
+            raise SceneError(heading.name, cell, rule)
+        value, uncertainty = (terms.own(number, by[terms.by]) for number in (value, uncertainty))
     return Input(value, uncertainty, cell)
 
 
