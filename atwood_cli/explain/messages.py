@@ -15,7 +15,7 @@ from ..reading.units import MAX_MAGNITUDE
 from ..solver.answers import Answers
 from ..solver.physics import critical_heavier_mass
 from ..solver.quantities import FROM_MOTION, NAMES, QUANTITIES
-from ..solver.scene import MASSES, WEIGHT, with_unit
+from ..solver.scene import MASSES, with_unit
 
 
 def unmarked(words: str) -> str:
@@ -195,7 +195,7 @@ def _on_terms(answers: Answers) -> list[str]:
         return format_number(strip_zeros(_beside(answers, None)(number)))
 
     scene, motion = answers.decided.scene, answers.decided.motion
-    weights = {x: short(given.number) for x, given in scene.terms if given.terms == WEIGHT and given.number}
+    weights = {x: short(given.number) for x, given in scene.terms if x in MASSES and given.number}
     each = [f"`{x}` is a weight of {weights[x]} N, the mass {short(getattr(scene, x))} kg" for x in weights]
     of = f" of {min(weights.values())} N" if len(weights) == 1 else ""
     pull = f"; a pull{of} that is no weight accelerates differently" if answers["acceleration"] != 0 else ""

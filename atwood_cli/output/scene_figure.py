@@ -136,7 +136,7 @@ def _draw_pulley(axes: "Axes", answers: Answers, phi: float) -> None:
     axes.text(0, 0.26, _pulley(answers), ha="center", va="center", size=8)
     above = 1j * np.exp(-1j * answers.decided.sign * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
     if answers["rim_acceleration"]:
-        _draw_arc(axes, ROTATION_AT * above, PURPLE, "white")
+        _draw_arc(axes, ROTATION_AT * (above[::-1] if answers.decided.slows_down else above), PURPLE, "white")
     if friction := _axle_friction(answers):
         _draw_arc(axes, AXLE_AT * above.conj(), ORANGE, ORANGE)
         axes.text(0, -0.42, f"axle friction\n= {friction} N", ha="center", va="center", size=8, color=ORANGE)
@@ -238,7 +238,7 @@ def _draw_masses(axes: "Axes", answers: Answers, lengths: Mapping[str, float]) -
             axes.text(x * (1 + away), height, typeset(words), **look)
         if acceleration:
             centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
-            way = -1j * x * answers.decided.sign * ACCELERATION
+            way = -1j * x * (1 if acceleration > 0 else -1) * ACCELERATION
             _draw_arc(axes, centre + way * np.array([-0.5, 0.5]), PURPLE, "white")
     words = typeset(f"a = {_number(abs(acceleration))} m/s²") if acceleration else "a = 0"
     height = -STRING - LARGER_SIDE - 0.17 - (LONGEST if len(words) > BETWEEN_WEIGHTS else 0)
