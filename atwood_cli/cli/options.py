@@ -29,7 +29,7 @@ REMARKS = {
     "g": ", or a planet, moon or pluto; 9.80665 if not given",
     "inertia": ", or disk, hoop, ring, sphere, shell; 0.5 if not given",
     "I": ", instead of inertia; needs R",
-    "wrap": ": degrees, 3rad, pi/2, 2.5turn (half a turn and two whole turns); 180 if not given",
+    "wrap": ": degrees, 3rad, pi/2, 2.5turn; 180 if not given",
     "axle": ", 15mN, or a torque, 0.4mNm (needs R)",
     "a": ", 0.3g, 5rad/s2: finds M, or a mass, g, mu_k",
     "drop": ": two of drop, time, speed stand for a, one gives the others",
