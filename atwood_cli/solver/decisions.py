@@ -27,7 +27,7 @@ mu cannot be given, and the second line answers.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..numbers.lazy import lazy
 from ..numbers.rational import EXACT
@@ -62,6 +62,7 @@ class Decisions:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.motion = scene, scene.motion
+        self._ratios: dict[tuple[LimitingCase, Arithmetic[Any]], Any] = {}
 
     @lazy
     def sign(self) -> int:
@@ -302,7 +303,16 @@ class Decisions:
     # The tension ratio of a string that grips, against e^{μφ}
 
     def ratio_minus_1(self, at: LimitingCase, ar: Arithmetic[N]) -> N:
-        """Return T_h/T_l - 1 of a string that grips, in a case of the table at the head."""
+        """Return T_h/T_l - 1 of a string that grips, in a case of the table at the head.
+
+        It is kept, as decisions and quantities ask for it.
+        """
+        if (at, ar) not in self._ratios:
+            self._ratios[at, ar] = self._ratio_minus_1(at, ar)
+        ratio: N = self._ratios[at, ar]
+        return ratio
+
+    def _ratio_minus_1(self, at: LimitingCase, ar: Arithmetic[N]) -> N:
         l, h, b = self.light, self.heavy, self.axle_mass
         # A limit does not read the pulley's mass: in a sweep of it the caches of `interval` have the limit.
         c = self.rim_mass if at in ("as_given", "heaviest") else ZERO

@@ -271,7 +271,8 @@ class Machine(Generic[N]):
             return self.ar.number(0)
         if not self.decided.pulley_known:
             return self.ar.number(self.decided.limiting_mu)
-        return physics.verge_coefficient(self.log_ratio, self.phi)
+        phi = self.phi  # before the ratio, which is not worth computing in fractions: they have no π
+        return physics.verge_coefficient(self.log_ratio, phi)
 
     @lazy
     def safety_factor(self) -> N:

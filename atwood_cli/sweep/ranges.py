@@ -324,10 +324,19 @@ def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequen
 def solve_rows(
     sweep: Sweep, names: Sequence[str], digits: int | None, conditions: Sequence[Condition] = ()
 ) -> Iterator[Row]:
-    """Yield the quantities named at every point, each point solved by itself."""
+    """Yield the quantities named at every point, each point solved by itself.
+
+    The critical pulley mass is the same on all pulleys, unless their shapes differ, as of a given I.
+    """
+    of_any_pulley = Answers(sweep.scene, digits)
+    is_same = [range_.name for range_ in sweep.ranges] == ["M"] and sweep.scene.I is None
     for scene, place in sweep.scenes(sweep.ranges):
         answers = Answers(scene, digits)
-        reasons = {name: reason for name in names if (reason := answers.answer(name).reason)}
-        decided, values = answers.decided, {name: answers[name] for name in names}
+        by_name = {
+            name: (of_any_pulley if is_same and name == "critical_pulley_mass" else answers).answer(name)
+            for name in names
+        }
+        reasons = {name: answer.reason for name, answer in by_name.items() if answer.reason}
+        decided, values = answers.decided, {name: answer.value for name, answer in by_name.items()}
         failures = {x.typed: why for x in conditions if (why := failure(answers, x))}
         yield Row(place, decided.regime, decided.mu_assumed, values, reasons, failures)
