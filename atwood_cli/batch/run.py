@@ -136,17 +136,24 @@ def _markdown(rows: bytes | memoryview, table: Csv, is_header: bool) -> bytes:
 
 def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve lines, each of which is an object: results become its last members."""
-    columns, wanted = ReadColumns([]), job.wanted
+    columns, wanted, answered = ReadColumns([]), job.wanted, 0
 
     def headings(keys: Sequence[str]) -> Sequence[Heading]:
         nonlocal columns
-        columns = read_columns(keys, wanted, whole=False)
+        try:
+            columns = read_columns(keys, wanted, whole=False)
+        except Unreadable as error:
+            if not answered:
+                raise
+            where = f"row {answered + 1} or a later one; those before it are answered"
+            raise Unreadable(f"{error} ({where})", error.options) from None
         return columns.headings
 
     with _watched(read_ndjson(blocks_of(source), headings), job, source) as watched:
         for piece in watched:
             target.write(_ndjson(piece, solve_cells(piece.cells, columns, wanted, tally, piece.errors)))
             target.flush()
+            answered += len(piece.texts)
     there = [*(one.column for one in columns.headings if one.place >= 0), *columns.not_read]
     known = {*map(without_blanks, there)}  # any line may have what --column names
     if known and (absent := [one for one in wanted.named if without_blanks(one) not in known]):
