@@ -38,6 +38,21 @@ CHANGES = [
      "    @property\n    def trial(self) -> N:\n        return self.ar.number(self.decided.light) + self.decided.heavy\n\n"),
     ("add a quantity", "api.py", "    pulley_mass: T |", "    trial: T | None\n"),
     ("take a unit", "reading/units.py", '"kg": "1", ', '"stater": "7", '),
+    ("add an input", "solver/scene.py", '}\n"""The inputs of a scene, which columns',
+     '    "brake": Parameter("friction of a brake", "f_brake", "brake", "N", may_be_zero=True, dimension="force"),\n'),
+    ("add an input", "solver/scene.py", "    motion: Motion = UNMEASURED\n    terms: ", "    brake: Fraction | None = None\n"),
+    ("add an input", "solver/decisions.py", "        return ZERO if self.scene.axle is None else self.scene.axle\n",
+     "        if self.scene.brake is not None:\n            return self.scene.brake + (self.scene.axle or ZERO)\n"),
+    ("add an input", "api.py", "    a: Given | None\n", "    brake: Given | None\n"),
+    ("add an input", "arrays/__init__.py", '    accuracy: Accuracy = "certified",\n    quantities: ', "    brake: Numbers | None = None,\n"),
+    ("add an input", "arrays/__init__.py", ")\n    return solve_and_count(dict(zip(INPUTS", ", brake"),
+    ("add an input", "arrays/inputs.py", ')\n"""The meanings of the codes in', '    "brake",\n'),
+    ("add an input", "test_contract", '"\nFITTED = ', " brake"),
+    ("add an input", "test_contract", " a? drop? time? speed? find?", " brake?"),
+    ("add an input", "test_contract", " accuracy='certified' quantities?", " brake?"),
+    ("add an input", "test_contract", '""",\n    ),\n    "commands"', " brake"),
+    ("add an input", "oracle.py", "    rests = 0 < (h - l) * g <= f",
+     "    f += rational(scene.brake) if scene.brake else 0\n"),
     ("add a form", "output/text.py", '    "csv": Form(',
      '    "lines": Form(".lines", "Print lines.", lambda forms: print(len(forms.json())), True),\n'),
 ]
@@ -47,7 +62,9 @@ SEEN = """
 from atwood_cli import Solution, cli, solve, solve_arrays
 print("both masses" in Solution.__doc__)
 print(solve(m1="1stater", m2=3).trial, *solve_arrays(1, [2, 3], quantities=["trial"])["trial"])
-for words in ("solve --only Q", "sweep --M 1:2:2 --only trial --csv", "solve --only trial --lines"):
+print(solve(1, 3, M=2, brake="1N").acceleration == solve(1, 3, M=2, axle=1).acceleration)
+print(*solve_arrays(1, 3, M=2, brake=[1, -1])["acceleration"], *solve_arrays(1, 3, brake=-1)["status"].flat)
+for words in ("solve --M 2 --axle .5 --brake .5N --only a", "solve --only Q", "sweep --M 1:2:2 --only trial --csv", "solve --only trial --lines"):
     cli.run([*words.split(), "--m1", "1stater", "--m2", "3"])
 """
 
@@ -87,7 +104,8 @@ def test_the_suite_passes_with_what_the_map_names(changed: Path, pytestconfig: p
 
 def test_what_the_map_names_is_enough(changed: Path) -> None:
     ran = process(code=SEEN, PYTHONPATH=str(changed), PYTHONSAFEPATH="1")
-    assert (ran.out, ran.err) == ("True\n10.0 3.0 4.0\n10\nM,trial\n1,10\n2,10\n1\n", "")
+    seen = "True\n10.0 3.0 4.0\nTrue\n3.72266 nan 20\n-3.4751454545454545\n10\nM,trial\n1,10\n2,10\n1\n"
+    assert (ran.out, ran.err) == (seen, "")
 
 
 WITHOUT_DIMENSION = ("", "rad/s²")
