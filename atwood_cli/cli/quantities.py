@@ -30,7 +30,7 @@ ON_FRICTION = (
 Names = Annotated[
     list[str] | None,
     typer.Argument(
-        metavar="[NAME]...", rich_help_panel="Output", help="Only these quantities.", show_default=False
+        metavar="[NAMES]", rich_help_panel="Output", help="Only these quantities.", show_default=False
     ),
 ]
 

@@ -17,7 +17,7 @@ Part = TypeVar("Part")
 Groups = Sequence[Sequence[Sequence[str]]]
 """Groups of rows of cells."""
 
-PIPE_WIDTH = 100
+PIPE_WIDTH = 80
 
 
 class Page:
