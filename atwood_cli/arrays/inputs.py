@@ -153,7 +153,8 @@ def _kinds(name: str, given: Mapping[str, GivenColumn], terms: Mapping[str, Term
     (doubles, absent), (low, high) = given[name], WINDOW
     if absent is not None and absent.all():
         return np.array(Kind.ABSENT)
-    sizes = [doubles, own := _own(name, given, terms)]
+    own = _own(name, given, terms)
+    sizes = [doubles] if own is doubles else [doubles, own]
     if name == "I":
         sizes.append(doubles / given["R"].doubles / given["R"].doubles)
     if name == "axle":
@@ -185,7 +186,7 @@ def _heavier(given: Mapping[str, GivenColumn], terms: Mapping[str, Terms], size:
     """Return 1 where m2 is the heavier mass, -1 where m1 is, else 0."""
     if terms.get("m1") == terms.get("m2"):
         m1, m2 = (given[name].doubles for name in MASSES)
-        return 1 * (m2 > m1) - (m2 < m1)
+        return np.array(1) if (is_m2 := m2 > m1).all() else 1 * is_m2 - (m2 < m1)
     m1, m2 = (np.broadcast_to(_own(name, given, terms), size) for name in MASSES)
     order = 1 * (m2 > m1) - (m2 < m1)
     for row in np.flatnonzero(np.abs(m2 - m1) <= NEARLY_EQUAL * m1).tolist():  # a weight beside a mass
