@@ -212,19 +212,19 @@ def test_a_repeat_is_an_outlier_if_chance_makes_one_as_far_on_either_side_too_se
     """The scatter of the others is at least that of their last digit; one of them, at the mean, was not counted."""
     values = np.array([1.0, 1.1, 0.9, 1.25, 2.0])
     judge = judge_of_repeats(values, np.ones(5), np.zeros(5, dtype=np.intp), 0.05)
-    ((outlier, distance),) = outliers(judge, 5, 4, 5.0).items()
+    ((outlier, distance),) = outliers(judge, range(5), 4, 5.0).items()
     scatter = np.var(values[:4], ddof=1) + 0.05**2 / 12
     assert outlier == 4
     assert distance == pytest.approx((2 - values[:4].mean()) / sqrt(scatter * 5 / 4))
     chance = 5 * 2 * float(stats.t.sf(distance, 3))  # of any of five
-    assert [len(outliers(judge, 5, 4, chance * by)) for by in (0.99, 1.01)] == [0, 1]
+    assert [len(outliers(judge, range(5), 4, chance * by)) for by in (0.99, 1.01)] == [0, 1]
 
 
 def test_a_run_is_judged_by_the_line_of_the_others() -> None:
     """Its distance is over the uncertainty of its own prediction: a t statistic of n - p - 1 = 3."""
     x, y, none = np.arange(6.0), np.array([0.1, 0.9, 2.1, 2.9, 9.0, 5.1]), np.zeros(6)
     judge = partial(distances_from, fit_line(np.stack([np.ones(6), x], 1), y, none + 1e-20, none + 1))
-    ((outlier, distance),) = outliers(judge, 6, 4, 0.01).items()
+    ((outlier, distance),) = outliers(judge, range(6), 4, 0.01).items()
     others = x != 4
     line, covariance = np.polyfit(x[others], y[others], 1, cov=True)
     rest = y[others] - np.polyval(line, x[others])

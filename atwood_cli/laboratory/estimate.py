@@ -188,13 +188,6 @@ def _least_squares(
         return of_measured(data, {**values, **dict(zip(names, x, strict=True))}) / sigma
 
     start = np.maximum([values[name] for name in names], np.divide(least, 2))
-    exactly: Any = {
-        "ftol": 1e-15,
-        "xtol": 1e-12,
-        "gtol": None,
-        "jac": "cs",
-        "x_scale": "jac",
-        "max_nfev": 100,
-    }
-    best = least_squares(rest, start, bounds=(least, inf), **exactly)
+    exactly: Any = {"ftol": 1e-15, "xtol": 1e-12, "gtol": None, "jac": "cs", "x_scale": "jac"}
+    best = least_squares(rest, start, bounds=(least, inf), max_nfev=100, **exactly)
     return dict(zip(names, best.x.tolist(), strict=True))

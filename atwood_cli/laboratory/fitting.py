@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from functools import partial
 from math import hypot, inf
 from typing import Any, NamedTuple
 
@@ -31,7 +30,7 @@ from .estimate import (
 )
 from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, published, rounded
 from .runs import OUT_OF_RANGE, Column, Places, Runs, Selection, behind_an_error, in_range, in_words
-from .statistics import CannotSeparate, Judge, Line, distances_from, judge_of_repeats, outliers
+from .statistics import CannotSeparate, Line, distances_from, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
@@ -342,14 +341,16 @@ def _outliers(fit: Fitted) -> Iterator[tuple[int, Message]]:
     places = np.flatnonzero((fit.used & (np.bincount(runs.run) > 1))[runs.run])
     free = len(places) - len({*runs.run[places]})
     is_few = 0 < free < FEW_REPEATS and not fit.data.stated
+    kept, far_runs = np.ones(len(runs.values), dtype=bool), dict[int, float]()
     if is_few:
-        single = fit._replace(runs=_as_single(runs), used=fit.used[runs.run])
-        far_cells, far_runs, others = _run_outliers(single), dict[int, float](), "a fit of the others"
+        given, u = ({x: column[runs.run] for x, column in some.items()} for some in (runs.given, runs.u))
+        single = runs._replace(given=given, u=u, left_out=runs.left_out[runs.run], run=np.arange(len(kept)))
+        far_cells = _far_runs(fit._replace(runs=single, used=fit.used[runs.run]), kept)
     else:
-        far_cells, others = _repeat_outliers(fit, places, free), "its repeats, by the scatter of the others"
-        kept = np.ones(len(runs.values), dtype=bool)
+        far_cells = _far_repeats(fit, places, free)
         kept[[*far_cells]] = False
-        far_runs = _run_outliers(fit, kept)
+        far_runs = _far_runs(fit, kept)
+    others = "a fit of the others" if is_few else "its repeats, by the scatter of the others"
     named = set[str]()
     for place, far in far_cells.items():
         run, row, cell = int(runs.run[place]), row_of[place], runs.cells[place]
@@ -367,28 +368,20 @@ def _outliers(fit: Fitted) -> Iterator[tuple[int, Message]]:
         yield run, _far(what, far, "a fit of the other runs", ",".join(map(str, runs.rows[run])))
 
 
-def _as_single(runs: Runs) -> Runs:
-    """Return each measurement as a run."""
-    given, u = ({x: column[runs.run] for x, column in columns.items()} for columns in (runs.given, runs.u))
-    single = np.arange(len(runs.values))
-    return runs._replace(given=given, u=u, left_out=runs.left_out[runs.run], mean=runs.values, run=single)
-
-
-def _repeat_outliers(fit: Fitted, places: Places, free: int) -> dict[int, float]:
+def _far_repeats(fit: Fitted, places: Places, free: int) -> dict[int, float]:
     """Return the outliers among repeats, at these ``places``, by their distances."""
     # Of two repeats, which are equally far from each other, that far from the line comes first.
-    runs, data, usable = fit.runs, fit.data, np.flatnonzero(fit.used)
-    measured = (runs.sign[runs.run] * runs.values)[places]
-    away = measured - expected(data, fit.values)[np.searchsorted(usable, runs.run[places])]
+    runs = fit.runs
+    ideal = expected(fit.data, fit.values)[(np.cumsum(fit.used) - 1)[runs.run[places]]]
+    away = (runs.sign[runs.run] * runs.values)[places] - ideal
     places = places[np.argsort(-np.abs(away), kind="stable")]
-    u = runs.u_values[places] if data.stated else np.ones(len(places))
+    u = runs.u_values[places] if fit.data.stated else np.ones(len(places))
     judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
-    far = outliers(judge, len(places), free, OUTLIER_LEVEL)
-    return {int(places[i]): distance for i, distance in far.items()}
+    return outliers(judge, places, free, OUTLIER_LEVEL)
 
 
-def _run_outliers(fit: Fitted, kept: Selection | None = None) -> dict[int, float]:
-    """Return the outliers among runs, by their distances.
+def _far_runs(fit: Fitted, kept: Selection) -> dict[int, float]:
+    """Return the outliers among runs, with the measurements that are ``kept``, by their distances.
 
     They are judged by the line of forces, which outliers bend least. That is no line in a delay: if one is
     fitted, runs are judged by the least squares of the times of the others.
@@ -397,18 +390,14 @@ def _run_outliers(fit: Fitted, kept: Selection | None = None) -> dict[int, float
     values = {**fit.values, "rim_mass": max(fit.values["rim_mass"], 0.0)}
     given = {x: value for x, value in values.items() if x not in names}
 
-    def by_times(some: Selection) -> tuple[Column, Any]:
+    def judge(some: Selection) -> tuple[Column, Any]:
+        if "delay" not in names:
+            return distances_from(line_of(of_forces, data, values, names), some)
         others = np.isin(np.arange(len(fit.used)), usable[some])
         best, _ = estimate(as_data(fit.runs, others, kept), given, names, values)
         return distances_from(line_of(of_measured, data, best, names), some)
 
-    with suppress(CannotSeparate):
-        judge: Judge = by_times
-        if "delay" not in names:
-            judge = partial(distances_from, line_of(of_forces, data, values, names))
-        far = outliers(judge, len(usable), len(usable) - len(names), OUTLIER_LEVEL)
-        return {int(usable[i]): distance for i, distance in far.items()}
-    return {}
+    return outliers(judge, usable, len(usable) - len(names), OUTLIER_LEVEL)
 
 
 def _far(what: str, distance: float, others: str, where: str) -> Message:

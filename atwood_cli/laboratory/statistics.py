@@ -5,7 +5,7 @@ variance between runs; B. Rosner, "Percentage points for a generalized ESD many-
 Technometrics 25 (1983) 165, counts outliers that hide each other.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -110,14 +110,14 @@ Judge = Callable[[Selection], tuple[Column, Any]]
 """Return how many standard deviations each value is from a fit of those kept, and degrees of freedom."""
 
 
-def outliers(judge: Judge, count: int, free: int, level: float) -> dict[int, float]:
-    """Return outliers among ``count`` values, by distances (in standard deviations) from the others (Rosner).
+def outliers(judge: Judge, places: Sequence[int] | Places, free: int, level: float) -> dict[int, float]:
+    """Return outliers by their places, with distances (in standard deviations) from the others (Rosner).
 
     The value that is farthest from the fit of those kept is left out, and judged by the fit of the others;
     this goes on, and all values are outliers up to the last that chance does not explain. ``free`` are the
     degrees of freedom with all values, and ``level`` the probability that a sound set has an outlier.
     """
-    kept, left_out, distances = np.ones(count, dtype=bool), list[int](), dict[int, float]()
+    kept, left_out, distances = np.ones(len(places), dtype=bool), list[int](), dict[int, float]()
     with suppress(CannotSeparate):
         distance, _ = judge(kept)
         for _ in range(min(MOST_OUTLIERS, max(1, free // 3), free - 1)):
@@ -127,8 +127,8 @@ def outliers(judge: Judge, count: int, free: int, level: float) -> dict[int, flo
             kept[i] = False
             left_out.append(i)
             distance, dof = judge(kept)
-            if stdtr(dof, -np.abs(distance))[i] < level / (2 * count):  # of one value, on one side
-                distances = {j: float(distance[j]) for j in left_out}
+            if stdtr(dof, -np.abs(distance))[i] < level / (2 * len(places)):  # of one value, on one side
+                distances = {int(places[j]): float(distance[j]) for j in left_out}
     return distances
 
 
