@@ -7,7 +7,7 @@ import numpy as np
 from ..output.figure import BLUE, FAINT, INK, RED, page, typeset, write_beside
 from ..output.text import Picture
 from ..solver import physics
-from .estimate import accelerations, as_data, expected
+from .estimate import accelerations, as_data
 from .fitting import Fitted
 from .report import conditions, verdict
 from .results import QUANTITIES, published
@@ -25,7 +25,7 @@ def save(fit: Fitted, picture: Picture) -> None:
     difference: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(g))
     x, y = a[used], difference[used]
     u_x = fit.line.sigma if data.drop is None else 2 * fit.line.sigma * x / (fit.data.measured - delay)
-    residual = (fit.data.measured - expected(fit.data, fit.values)) / fit.line.sigma
+    residual = fit.line.y / fit.line.sigma
     captions = {
         "Error bars are standard uncertainties.": True,
         "They include a scatter of forces between runs.": fit.line.between > 0,

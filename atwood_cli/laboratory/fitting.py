@@ -57,11 +57,20 @@ NO_FIT = "no pulley explains these runs, whatever its inertia and its axle's fri
 
 
 class Conditions(NamedTuple):
-    """The inputs that all runs share, with ``drop`` if they share it, and the quantities that these give."""
+    """The inputs that all runs share, with ``drop`` if they share it."""
 
     inputs: Mapping[str, Input]
     scene: Scene
-    values: Mapping[str, float]
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Return the quantities of a fit that are given."""
+        scene, values = self.scene, {"gravity": float(self.scene.g)}
+        if scene.axle is not None:
+            values["axle"] = float(scene.axle)
+        if scene.M is not None or scene.I is not None:
+            values["rim_mass"] = float(Decisions(scene).rim_mass or 0)
+        return values
 
 
 class Fitted(NamedTuple):
@@ -94,19 +103,8 @@ def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
         if typed.given is not None and not in_range(typed):
             raise SceneError(x, typed.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
-    scene = Scene.of({**inputs, **masses})
-    if "drop" in inputs:
-        scene = scene._replace(motion=Motion(drop=inputs["drop"].value))
-    return _conditions_at(inputs, scene)
-
-
-def _conditions_at(inputs: Mapping[str, Input], scene: Scene) -> Conditions:
-    decided, values = Decisions(scene), {"gravity": float(scene.g)}
-    if scene.axle is not None:
-        values["axle"] = float(decided.axle_friction)
-    if scene.M is not None or scene.I is not None:
-        values["rim_mass"] = float(decided.rim_mass or 0)
-    return Conditions(inputs, scene, values)
+    motion = Motion(drop=inputs["drop"].value if "drop" in inputs else None)
+    return Conditions(inputs, Scene.of({**inputs, **masses})._replace(motion=motion))
 
 
 def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
@@ -116,8 +114,7 @@ def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
             size = given.scene.number_of(x)
             if not parameter_of(x).may_be_zero and u >= size:
                 raise SceneError(x, typed.given, "has an uncertainty that reaches 0")
-            scenes = (given.scene.with_number(x, end) for end in (size - u, size + u))
-            yield [_conditions_at(given.inputs, scene) for scene in scenes]
+            yield [given._replace(scene=given.scene.with_number(x, end)) for end in (size - u, size + u)]
 
 
 def _as_one_height(runs: Runs, given: Conditions) -> tuple[Runs, Conditions]:
@@ -187,7 +184,8 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         if len(data.l) < needed:
             why = f"{counted(len(data.l), 'run')} cannot determine {' and '.join(what)}"
             raise CannotSeparate(f"{why}: give {needed} or more")
-        mistakes = _mistakes(runs, used, data, given.values["gravity"], names)
+        if "gravity" not in names and "delay" not in names:
+            mistakes = _mistakes(runs, used, data, given.values["gravity"])
         if not _separates(data, given.values, names):
             verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
             raise CannotSeparate(f"the runs do not {verb} {' from '.join(what)}: {vary}")
@@ -423,16 +421,11 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     return bool(singular.min(initial=1.0) > LEAST_SINGULAR)
 
 
-def _mistakes(
-    runs: Runs, used: Selection, data: Data, g: float, names: Sequence[str]
-) -> list[tuple[int, Message]]:
+def _mistakes(runs: Runs, used: Selection, data: Data, g: float) -> list[tuple[int, Message]]:
     """Return the first run that must have a mistake. Raises CannotSeparate if most runs have one.
 
-    Accelerations, which may be small, are compared with those of free masses, unless gravity or a delay is
-    fitted.
+    Accelerations, which may be small, are compared with those of free masses.
     """
-    if {"gravity", "delay"} & {*names}:
-        return []
     a: Any = accelerations(data, data.measured)
     free: Any = physics.acceleration(data.h - data.l, data.h + data.l, g)
     is_mistaken = (a / free < SHARES[0]) | (a / free > SHARES[1])

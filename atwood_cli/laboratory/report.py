@@ -53,9 +53,9 @@ def _scatter(fit: Fitted) -> str:
     p_value = fit.line.p_value
     if p_value is None:
         return "There are as many runs as results, so nothing is left to test the fit."
-    share = np.max(np.abs(fit.data.measured - expected(fit.data, fit.values)) / fit.data.measured)
+    share = float(np.max(np.abs(fit.line.y) / fit.data.measured))
     if share < COMPUTED:
-        digits = int(-log10(max(float(share), ROUNDING)))
+        digits = int(-log10(max(share, ROUNDING)))
         return f"The runs agree with the fit to {digits} digits, as computed data do."
     if not fit.data.scatter.any():
         return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."

@@ -82,9 +82,8 @@ def fit_line(J: Any, y: Column, known: Column, shape: Column, known_dof: float =
         between = brentq(lambda v: 1 - dof / _solved(J, y, known + v * shape)[2], 0, most, xtol=1e-15 * most)
         t_dof = dof
     variance = known + between * shape
-    coefficients, covariance, _ = _solved(J, y, variance)
-    sigma = np.sqrt(variance)
-    return Line(J, y, known, shape, known_dof, coefficients, covariance, sigma, t_dof, chi2, between)
+    b, covariance, _ = _solved(J, y, variance)
+    return Line(J, y, known, shape, known_dof, b, covariance, np.sqrt(variance), t_dof, chi2, between)
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
@@ -159,11 +158,10 @@ def judge_of_repeats(values: Column, u: Column, run: Places, step: float) -> Jud
         total = np.bincount(run, weight)
         others = total[run] - weight
         dof = int(kept.sum()) - int(np.count_nonzero(total))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            mean = np.bincount(run, weight * values) / total
-            chi2 = sum_of_squares(((values - mean[run]) / u)[kept])
-            spread = (chi2 / max(dof, 1) * u**2 + step**2 / 12) * (1 + u**-2 / others)
-            away = (values - mean[run]) * (weight + others) / others
-            return np.where((others > 0) & (spread > 0), away / np.sqrt(spread), 0), dof
+        mean = np.bincount(run, weight * values) / total
+        chi2 = sum_of_squares(((values - mean[run]) / u)[kept])
+        spread = (chi2 / max(dof, 1) * u**2 + step**2 / 12) * (1 + u**-2 / others)
+        away = (values - mean[run]) * (weight + others) / others
+        return np.where((others > 0) & (spread > 0), away / np.sqrt(spread), 0), dof
 
     return judge
