@@ -158,34 +158,29 @@ def estimate(
     Return the values, given ones too, and the linear fit at these. Variances follow the values (effective
     variance), and least squares the variances.
     """
-    values = {**(near or by_forces(data, given, names)), **given}
-    size = inf
+    first = {**(near or by_forces(data, given, names)), **given}
+    lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
+    least = [lightest if name == "rim_mass" else -inf for name in names]
+    exactly: Any = {"ftol": 1e-15, "xtol": 1e-12, "gtol": None, "jac": "cs", "x_scale": "jac"}
+
+    def at(x: Any) -> dict[str, Any]:
+        return {**first, **dict(zip(names, x, strict=True))}
+
+    def rest(x: Any, sigma: Column) -> Any:
+        return of_measured(data, at(x)) / sigma
+
+    x, size = np.array([first[name] for name in names]), inf
     for step in range(MOST_STEPS):
-        line = line_of(of_measured, data, values, names)
+        line = line_of(of_measured, data, at(x), names)
         share = line.J @ line.coefficients / data.measured
         before, size = size, sqrt(sum_of_squares(share) / len(share))
         if size < NEAR:
-            values |= {x: values[x] + float(b) for x, b in zip(names, line.coefficients, strict=True)}
+            x = x + line.coefficients
         elif step < MOST_SEARCHES:
-            values |= _least_squares(data, values, names, line.sigma)
+            x = np.maximum(x, np.divide(least, 2))
+            x = least_squares(rest, x, args=(line.sigma,), bounds=(least, inf), max_nfev=100, **exactly).x
         else:
             break
         if size < CLOSE or before < size < ENOUGH:
-            return values, line
+            return at(x.tolist()), line
     raise CannotSeparate
-
-
-def _least_squares(
-    data: Data, values: Mapping[str, float], names: Sequence[str], sigma: Column
-) -> dict[str, float]:
-    """Return the values of these names with the least sum of squares, by the uncertainties of runs."""
-    lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
-    least = [lightest if name == "rim_mass" else -inf for name in names]
-
-    def rest(x: Any) -> Any:
-        return of_measured(data, {**values, **dict(zip(names, x, strict=True))}) / sigma
-
-    start = np.maximum([values[name] for name in names], np.divide(least, 2))
-    exactly: Any = {"ftol": 1e-15, "xtol": 1e-12, "gtol": None, "jac": "cs", "x_scale": "jac"}
-    best = least_squares(rest, start, bounds=(least, inf), max_nfev=100, **exactly)
-    return dict(zip(names, best.x.tolist(), strict=True))

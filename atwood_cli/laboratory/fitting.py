@@ -64,8 +64,10 @@ class Conditions(NamedTuple):
 
     @property
     def values(self) -> dict[str, float]:
-        """Return the quantities of a fit that are given."""
+        """Return the quantities of a fit that are given, and the height of fall."""
         scene, values = self.scene, {"gravity": float(self.scene.g)}
+        if scene.motion.drop is not None:
+            values["drop"] = float(scene.motion.drop)
         if scene.axle is not None:
             values["axle"] = float(scene.axle)
         if scene.M is not None or scene.I is not None:
@@ -199,12 +201,9 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
 
 def _with_results(runs: Runs, used: Selection, data: Data, given: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of the runs that are used. Raises CannotSeparate."""
-    results = dict[str, Result]()
 
     def under(near: Conditions) -> dict[str, float]:
-        height = near.scene.motion.drop
-        moved = data if height is None else data._replace(drop=np.full(len(data.l), float(height)))
-        return _with_derived(estimate(moved, near.values, names, values)[0], names, near)
+        return _with_derived(estimate(data, near.values, names, values)[0], names, near)
 
     try:
         values, line = estimate(data, given.values, names)
@@ -216,6 +215,7 @@ def _with_results(runs: Runs, used: Selection, data: Data, given: Conditions, na
             line = line_of(of_forces, data, values, names)
             message = _suspects(Fitted(runs, used, used, given, names, data, values, line)) or message
         raise CannotSeparate(f"{NO_FIT}: ", *message) from None
+    results = dict[str, Result]()
     fit = Fitted(runs, used, used, given, names, data, values, line, results)
     by_runs = np.sqrt(line.covariance.diagonal()).tolist()
     spread = _with_derived(dict(zip(names, by_runs, strict=True)), names, given)
@@ -271,9 +271,8 @@ def _causes(fit: Fitted) -> list[Message]:
                 delay = (" (", Option("find", ",".join(names)), f" gives {published(value, u)[0]} s)")
     if freed:
         freed.sort(key=lambda pair: pair[0].chi2)
-        best, extra = freed[0][0], 0.0
-        if (best.p_value or 0) >= SELDOM:
-            extra = fit.data.known_dof
+        best = freed[0][0]
+        extra = fit.data.known_dof if (best.p_value or 0) >= SELDOM else 0.0
         scale = max((best.chi2 + extra) / (best.dof + extra), TINY)
         if fdtrc(1, best.dof + extra, max(fit.line.chi2 - best.chi2, 0) / scale) * len(freed) < RARE:
             near = [message for line, message in freed if line.chi2 - best.chi2 < NEAR_BEST * scale]
