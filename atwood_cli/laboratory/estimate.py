@@ -22,6 +22,8 @@ After ``MOST_SEARCHES`` steps that are not linear none will be.
 """
 ROUNDING = 1e-12
 """The least standard uncertainty of a measured number, as a share of it."""
+LEAST_SINGULAR = 4e-4
+"""Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 TINY = 1e-100
 
 
@@ -137,6 +139,20 @@ def line_of(residual: Residual, data: Data, values: Mapping[str, float], names: 
         shape = slope(residual, data, values, "axle") ** 2
     J = slopes(residual, data, values, names)
     return fit_line(J, residual(data, values), known, shape, data.known_dof)
+
+
+def separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> bool:
+    """Decide if runs with these masses and heights determine the quantities, whatever was measured.
+
+    The singular values of the slopes at a plausible pulley tell, each slope scaled to the length 1.
+    """
+    design = data._replace(measured=np.full_like(data.l, inf))
+    least = float((data.h - data.l).min()) * given["gravity"]
+    values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), "delay": 0.0, **given}
+    values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
+    J: Any = slopes(of_measured, design, values, names) / expected(design, values)[:, None]
+    singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
+    return bool(singular.min(initial=1.0) > LEAST_SINGULAR)
 
 
 # Least squares

@@ -10,7 +10,7 @@ from ..solver import physics
 from .estimate import accelerations, as_data
 from .fitting import Fitted
 from .report import conditions, verdict
-from .results import QUANTITIES, published
+from .results import equation
 
 MOST_NAMED = 40  # runs; of more, only outliers and those left out
 MEANING = {"rim_mass": "slope c", "axle": "intercept f", "gravity": "g", "delay": "Δt"}
@@ -35,11 +35,8 @@ def save(fit: Fitted, picture: Picture) -> None:
         "The fitted delay is subtracted from the times.": "delay" in fit.names,
     }
     below = " ".join(words for words, holds in captions.items() if holds)
-    results = [
-        f"{words} = {published(*fit.results[name][:2])[0]} {QUANTITIES[name].unit}"
-        for name, words in MEANING.items()
-        if name in fit.results
-    ]
+    fitted = [x for x in MEANING if x in fit.results]
+    results = [equation(x, *fit.results[x][:2]).replace(x, MEANING[x]) for x in fitted]
     with page(picture, [conditions(fit), verdict(fit)], below, panels=2) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
         for axes in line, rest:
@@ -52,10 +49,9 @@ def save(fit: Fitted, picture: Picture) -> None:
         for level in (-2, 2):
             rest.axhline(level, color=FAINT, lw=0.8, ls="--")
         rest.plot(x, residual, "o", ms=4, color=INK)
-        suspects = [run for run, _ in fit.outliers]
-        odd = np.isin(np.flatnonzero(fit.used), suspects)
+        odd = np.isin(np.flatnonzero(fit.shown), [run for run, _ in fit.outliers])
         for axes, heights in ((line, y), (rest, residual)):
-            axes.plot(x[odd], heights[odd], "o", ms=9, mfc="none", color=RED)
+            axes.plot(x[odd[used]], heights[odd[used]], "o", ms=9, mfc="none", color=RED)
         line.text(0.03, 0.97, typeset("\n".join(results)), transform=line.transAxes, va="top", color=BLUE)
         line.set_ylabel("difference of tensions Tₕ − Tₗ (N)")
         rest.set_ylabel("residual/u")
@@ -66,6 +62,6 @@ def save(fit: Fitted, picture: Picture) -> None:
         line.plot(
             a[~used], difference[~used], "o", ms=4, mfc="none", color=INK, clip_on=False, in_layout=False
         )
-        is_named = ~used | np.isin(np.flatnonzero(fit.shown), suspects) | (len(used) <= MOST_NAMED)
+        is_named = ~used | odd | (len(used) <= MOST_NAMED)
         rows = [",".join(map(str, fit.runs.rows[run])) for run in np.flatnonzero(fit.shown).tolist()]
         write_beside(line, [(a[i], difference[i], rows[i], INK) for i in np.flatnonzero(is_named & (a > 0))])

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from math import hypot, inf
+from math import hypot
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +26,7 @@ from .estimate import (
     line_of,
     of_forces,
     of_measured,
-    slopes,
+    separates,
 )
 from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, published, rounded
 from .runs import OUT_OF_RANGE, Column, Places, Runs, Selection, behind_an_error, in_range, in_words
@@ -46,8 +46,6 @@ EARTH = 9.76, 9.84
 """The least and the most gravity (m/s²) on land."""
 WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
-LEAST_SINGULAR = 4e-4
-"""Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 SHARES = 1e-4, 2.0
 """An acceleration outside these shares of that without a pulley and friction must be a mistake."""
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
@@ -142,9 +140,8 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
                 raise SceneError("find", name, rule)
     for x, (_, terms) in given.scene.terms if "gravity" in names else ():
         if terms.by == "g":
-            raise SceneError(
-                x, given.inputs[x].given, f"is {terms.words}, and gravity is to be found; give it in kg"
-            )
+            rule = f"is {terms.words}, and gravity is to be found; give it in kg"
+            raise SceneError(x, given.inputs[x].given, rule)
     left = [x for x in USUAL if x not in names and x not in given.values]
     if names and left:
         what, give = (" and ".join(words[x] for x in left) for words in (RESULTS, GIVE))
@@ -188,7 +185,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
             raise CannotSeparate(f"{why}: give {needed} or more")
         if "gravity" not in names and "delay" not in names:
             mistakes = _mistakes(runs, used, data, given.values["gravity"])
-        if not _separates(data, given.values, names):
+        if not separates(data, given.values, names):
             verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
             raise CannotSeparate(f"the runs do not {verb} {' from '.join(what)}: {vary}")
         fit = _with_results(runs, used, data, given, names)
@@ -254,20 +251,19 @@ def _causes(fit: Fitted) -> list[Message]:
     runs scatter more than that with the best, too. Named are all that are as good as the best.
     """
     freed, delay = list[tuple[Line, Message]](), Message()
-    half = 0.0 if fit.runs.kind != "time" or "delay" in fit.names else inf
-    for name in (x for x in FITTED if x not in fit.names and (x != "delay" or half)):
+    is_open = fit.runs.kind == "time" and "delay" not in fit.names
+    for name in (x for x in FITTED if x not in fit.names and (x != "delay" or is_open)):
         names = [*fit.names, name]
         known = {x: value for x, value in fit.given.values.items() if x != name}
         with suppress(CannotSeparate, ZeroDivisionError):
-            if fit.line.dof < 2 or not _separates(fit.data, fit.given.values, names):
+            if fit.line.dof < 2 or not separates(fit.data, fit.given.values, names):
                 continue
             values, line = estimate(fit.data, known, names, fit.values)
             value, u = values[name], float(np.sqrt(line.covariance[-1, -1]))
-            known_as = fit.values[name]
-            if (name == "delay" or value + 2 * u > 0) and abs(value - known_as) > u:
+            if (name == "delay" or value + 2 * u > 0) and abs(value - fit.values[name]) > u:
                 freed.append((line, _cause(name, value, u, fit.given, names)))
             if name == "delay":
-                half = line.times * u
+                is_open = line.times * u > WIDE_DELAY
                 delay = (" (", Option("find", ",".join(names)), f" gives {published(value, u)[0]} s)")
     if freed:
         freed.sort(key=lambda pair: pair[0].chi2)
@@ -279,11 +275,11 @@ def _causes(fit: Fitted) -> list[Message]:
             which = "; they cannot tell which" if near[1:] else ""
             also = ", which may explain outliers, too" if fit.outliers else ""
             return [("the runs fit better if ", *joined(near, ", or "), f"{which}{also}")]
-    if half <= WIDE_DELAY or fit.outliers:
+    if not is_open or fit.outliers:
         return []
     wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
-    is_open = "it is open whether all times are too long by a delay"
-    return [(is_open, *delay, f"; the results assume none. {wider}")]
+    assumed = f"; the results assume none. {wider}"
+    return [("it is open whether all times are too long by a delay", *delay, assumed)]
 
 
 def _cause(name: str, value: float, u: float, given: Conditions, names: Sequence[str]) -> Message:
@@ -404,20 +400,6 @@ def _far(what: str, distance: float, others: str, where: str) -> Message:
 
 
 # Why there is no result
-
-
-def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> bool:
-    """Decide if runs with these masses and heights determine the quantities, whatever was measured.
-
-    The singular values of the slopes at a plausible pulley tell, each slope scaled to the length 1.
-    """
-    design = data._replace(measured=np.full_like(data.l, inf))
-    least = float((data.h - data.l).min()) * given["gravity"]
-    values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), "delay": 0.0, **given}
-    values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
-    J: Any = slopes(of_measured, design, values, names) / expected(design, values)[:, None]
-    singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
-    return bool(singular.min(initial=1.0) > LEAST_SINGULAR)
 
 
 def _mistakes(runs: Runs, used: Selection, data: Data, g: float) -> list[tuple[int, Message]]:

@@ -37,8 +37,9 @@ class Line(NamedTuple):
     """Weighted least squares of n values y: the ``coefficients`` b (p) for which J b is nearest to y.
 
     The variance of y is the ``known`` one, with its degrees of freedom ``known_dof``, and v ``shape`` with
-    an unknown v, ``between`` runs. ``sigma`` (n) is by their sum, ``covariance`` (p, p) that of b, and
-    ``t_dof`` has the degrees of freedom of Student's t of their intervals. ``chi2`` is by the known variance.
+    an unknown v, ``between`` runs. ``sigma`` (n) is by their sum, ``covariance`` (p, p) that of b. The values
+    have ``dof`` degrees of freedom, n - p, and Student's t of intervals ``t_dof``. ``chi2`` is by the known
+    variance.
     """
 
     J: Any
@@ -49,14 +50,10 @@ class Line(NamedTuple):
     coefficients: Column
     covariance: Any
     sigma: Column
+    dof: int
     t_dof: float
     chi2: float
     between: float
-
-    @property
-    def dof(self) -> int:
-        """Return the degrees of freedom of the values, n - p."""
-        return int(len(self.y) - self.J.shape[1])
 
     @property
     def p_value(self) -> float | None:
@@ -83,7 +80,7 @@ def fit_line(J: Any, y: Column, known: Column, shape: Column, known_dof: float =
         t_dof = dof
     variance = known + between * shape
     b, covariance, _ = _solved(J, y, variance)
-    return Line(J, y, known, shape, known_dof, b, covariance, np.sqrt(variance), t_dof, chi2, between)
+    return Line(J, y, known, shape, known_dof, b, covariance, np.sqrt(variance), dof, t_dof, chi2, between)
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
