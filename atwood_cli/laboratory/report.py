@@ -95,10 +95,8 @@ def conditions(fit: Fitted) -> str:
 
 def results_of(fit: Fitted, in_python: bool = False) -> Fit:
     """Return all of a fit by name, with its sentences: first the verdict and the outliers."""
-    outliers, causes = (
-        [f"{_capital(sentence(message, in_python))}." for message in messages]
-        for messages in ([message for _, message in fit.outliers], fit.causes)
-    )
+    messages = [message for _, message in fit.outliers], fit.causes
+    outliers, causes = ([f"{_capital(sentence(words, in_python))}." for words in some] for some in messages)
     known = bool(fit.data.scatter.any())
     return Fit(
         **{name: fit.results[name].value if name in fit.results else None for name in QUANTITIES},
@@ -191,8 +189,8 @@ def _rows(fit: Fitted, public: Fit) -> list[list[str]]:
     finest = float(min(fit.data.scatter.min() or np.inf, fit.line.sigma.min()))
     rows = []
     for run in public.runs:
-        where, kind, u, residual = run["rows"].replace(" ", ","), fit.runs.kind, run["u"], run["residual"]
-        numbers = format_number(run["m1"]), format_number(run["m2"]), cut(run[kind], finest)
-        expected_and_u = cut(run["expected"], finest), cut(u, u)
-        rows.append([where, *numbers, *expected_and_u, "" if residual is None else f"{residual:z.2f}"])
+        masses, u, residual = (format_number(run[x]) for x in ("m1", "m2")), run["u"], run["residual"]
+        numbers = cut(run[fit.runs.kind], finest), cut(run["expected"], finest), cut(u, u)
+        last = "" if residual is None else f"{residual:z.2f}"
+        rows.append([run["rows"].replace(" ", ","), *masses, *numbers, last])
     return rows
