@@ -112,11 +112,10 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memo
     import polars as pl
 
     error, mark = pl.col(ERROR), table.separator
-    marked = '"' + error.str.replace_all('"', '""', literal=True) + '"'
+    quoted = '"' + error.str.replace_all('"', '""', literal=True) + '"'
     special = error.str.contains(f'[{mark}"\r\n]')
-    rows = results.with_columns(pl.when(special).then(marked).otherwise(error).alias(ERROR))
-    rows = pl.DataFrame([piece.texts.alias("")]).hstack(rows)
-    rows.write_csv(
+    rows = results.with_columns(pl.when(special).then(quoted).otherwise(error).alias(ERROR))
+    pl.DataFrame([piece.texts.alias("")]).hstack(rows).write_csv(
         buffer := BytesIO(),
         include_header=False,
         separator=mark,
@@ -136,14 +135,14 @@ def _markdown(rows: bytes | memoryview, table: Csv, is_header: bool) -> bytes:
 
 def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve lines, each of which is an object: results become its last members."""
-    columns, wanted, answered = ReadColumns([]), job.wanted, 0
+    columns, wanted = ReadColumns([]), job.wanted
 
     def headings(keys: Sequence[str]) -> Sequence[Heading]:
         nonlocal columns
         try:
             columns = read_columns(keys, wanted, whole=False)
         except Unreadable as error:
-            if not answered:
+            if not (answered := tally.rows):
                 raise
             where = f"row {answered + 1} or a later one; those before it are answered"
             raise Unreadable(f"{error} ({where})", error.options) from None
@@ -153,11 +152,10 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
         for piece in watched:
             target.write(_ndjson(piece, solve_cells(piece.cells, columns, wanted, tally, piece.errors)))
             target.flush()
-            answered += len(piece.texts)
-    there = [*(one.column for one in columns.headings if one.place >= 0), *columns.not_read]
-    known = {*map(without_blanks, there)}  # any line may have what --column names
-    if known and (absent := [one for one in wanted.named if without_blanks(one) not in known]):
-        raise Unreadable(f"there is no column {listed(absent[:1])}; there are {listed(there)}")
+    keys = [*(heading.column for heading in columns.headings if heading.place >= 0), *columns.not_read]
+    known = {*map(without_blanks, keys)}  # any line may have what --column names
+    if known and (absent := [column for column in wanted.named if without_blanks(column) not in known]):
+        raise Unreadable(f"there is no column {listed(absent[:1])}; there are {listed(keys)}")
     return _remarks(columns)
 
 

@@ -17,7 +17,7 @@ from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import OTHER_NAMES, read_plain, read_scene, read_value
 from ..solver.answers import Answers
 from ..solver.quantities import NAMES, REGIMES
-from ..solver.scene import INPUTS, MASSES, Angle, InTerms, Scene, SceneError, parameter_of
+from ..solver.scene import INPUTS, MASSES, Angle, InTerms, SceneError, parameter_of
 from ..tables.headings import (
     EMPTY,
     MASS_NAMES,
@@ -80,7 +80,7 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
         raise Unreadable(f"column {in_quotes(clash[0])} has the name of a result; rename it")
     known = {without_blanks(column): column for column in columns}
     labels = {known.get(without_blanks(label), label) for label in wanted.labels}
-    named = {known.get(without_blanks(one), one): name for one, name in wanted.named.items()}
+    named = {known.get(without_blanks(column), column): name for column, name in wanted.named.items()}
     headings = read_headings(columns, VOCABULARY, labels, named, whole)
     inputs = {heading.name for heading in headings}
     if double := [name for name in wanted.given if name in inputs]:
@@ -98,13 +98,12 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
             raise refused(column, f"may mean {name}; rename it", way)
     missing = [mass for mass in MASSES if mass not in inputs]
     if missing and whole:
-        lacking = f"column {missing[0]} is" if len(missing) == 1 else "columns m1 and m2 are"
+        lacking = "columns m1 and m2 are" if missing[1:] else f"column {missing[0]} is"
         way = " ".join(f"--column {mass}=HEADING" for mass in missing)
         way += f", or --{missing[0]} for all rows"
         raise Unreadable(f"{lacking} missing; there are {listed(columns)}", f"; or give {way}")
-    for column, name in doubtful.items():
-        if name not in INPUTS:
-            raise refused(column, "has measurements, which only solve takes")
+    if measured := [column for column, name in doubtful.items() if name not in INPUTS]:
+        raise refused(measured[0], "has measurements, which only solve takes")
     not_read = [column for column in columns if column not in passed]
     return ReadColumns([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
 
@@ -161,12 +160,12 @@ class Tally:
         counts.append(counted(self.errors, "error") if self.errors else "no errors")
         if self.beyond:
             counts.append(f"{counted(self.beyond, 'value')} beyond the range of doubles left empty")
-        said = [f"{counted(self.rows, 'row')}: {'; '.join(counts)}."]
+        lines = [f"{counted(self.rows, 'row')}: {'; '.join(counts)}."]
         ranked = sorted(self.reasons.items(), key=lambda item: (-item[1], NAMES.index(item[0][0])))
-        said += reasons_in(dict(ranked), self.rows)
-        said += [f"first error, in {self.first_error}"] if self.errors else []
-        failed = f"{self.failed} of {counted(self.rows, 'row')} failed"
-        return [*said, *self.failures.values(), *([failed] if self.failed else [])]
+        lines += reasons_in(dict(ranked), self.rows)
+        lines += [f"first error, in {self.first_error}"] if self.errors else []
+        lines += self.failures.values()
+        return [*lines, f"{self.failed} of {counted(self.rows, 'row')} failed"] if self.failed else lines
 
 
 def solve_cells(
@@ -193,7 +192,7 @@ def solve_cells(
     given: Any = doubles.to_dict() | shared
     if "m1" in shared:  # perhaps all inputs are single numbers
         given["m1"] = pl.repeat(shared["m1"], len(rows), dtype=pl.Float64, eager=True)
-    terms = {one.name: one.terms for one in columns.headings if one.terms}
+    terms = {heading.name: heading.terms for heading in columns.headings if heading.terms}
     solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names], terms)
     single |= {*rows.filter(pl.Series(solved.pop("status")) != VALID)}
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
@@ -217,8 +216,7 @@ def solve_cells(
     values = values.select(pl.when(numbers.is_finite()).then(numbers).name.keep(), "regime")
     if wanted.digits:
         to_digits = f"{{:.{wanted.digits - 1}e}}".format
-        rounded = numbers.map_elements(lambda value: float(to_digits(value)), pl.Float64)
-        values = values.with_columns(rounded)
+        values = values.with_columns(numbers.map_elements(lambda x: float(to_digits(x)), pl.Float64))
     error = pl.repeat(None, cells.height, dtype=pl.String, eager=True)
     error = error.scatter(list(errors), list(errors.values()))
     results = values.select(*wanted.names, error.alias(ERROR))
@@ -321,28 +319,27 @@ def _double(heading: Heading, cell: str | float, comma: bool) -> float:
 
 def _failures(columns: ReadColumns, wanted: Wanted, row: Sequence[Any]) -> Mapping[str, str]:
     """Return what is expected of a row and fails, decided as `solve` does, with what holds instead."""
-    answers = Answers(_scene_of(columns, wanted.given, row))
+    answers = _answers(columns, wanted, row)
     return {x.typed: why for x in wanted.conditions if (why := failure(answers, x))}
 
 
 def _solve_row(
     columns: ReadColumns, wanted: Wanted, row: Sequence[Any]
-) -> "tuple[dict[str, Any], dict[tuple[str, str], int]] | str":
-    """Solve a row as `solve` does: return its results and the reasons of those that lack, or its error."""
+) -> tuple[dict[str, Any], set[tuple[str, str]]] | str:
+    """Return the results of a row and the reasons of those that it lacks, or its error."""
     try:
-        answers = Answers(_scene_of(columns, wanted.given, row))
+        answers = _answers(columns, wanted, row)
     except SceneError as error:
         return str(error)
     each = {name: answers.answer(name) for name in wanted.names if name != "regime"}
-    reasons = {(name, answer.reason): 1 for name, answer in each.items() if answer.reason}
-    values = {name: answer.value for name, answer in each.items()}
-    reasons |= dict.fromkeys(answers.decided.assumptions.items(), 1)
-    return {"regime": answers.decided.regime, **values}, reasons
+    reasons = {(name, answer.reason) for name, answer in each.items() if answer.reason}
+    values = {"regime": answers.decided.regime} | {name: answer.value for name, answer in each.items()}
+    return values, {*reasons, *answers.decided.assumptions.items()}
 
 
-def _scene_of(columns: ReadColumns, given: Mapping[str, str], row: Sequence[Any]) -> Scene:
-    """Read a row, and what all rows share, as `solve` does. Raises SceneError."""
-    cells: dict[str, Any] = {**given}
+def _answers(columns: ReadColumns, wanted: Wanted, row: Sequence[Any]) -> Answers:
+    """Solve a row, with what all rows share, as `solve` does. Raises SceneError."""
+    cells: dict[str, Any] = {**wanted.given}
     for heading, cell in zip(columns.headings, row, strict=True):
         text = pointed(heading.name, cell, columns.comma) if isinstance(cell, str) else cell
         if text is None or text in EMPTY:
@@ -350,4 +347,4 @@ def _scene_of(columns: ReadColumns, given: Mapping[str, str], row: Sequence[Any]
         if heading.unit and not (isinstance(text, str) and OWN_UNIT.search(text)):
             text = f"{text}{heading.unit}"
         cells[heading.name] = text if isinstance(text, str) else float(text)
-    return read_scene(cells)
+    return Answers(read_scene(cells))

@@ -21,8 +21,7 @@ Table = Annotated[
         metavar="IN",
         rich_help_panel="Files",
         help="Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz;"
-        " .xlsx, .ods;"
-        " - for stdin; a pipe is read as CSV.",
+        " .xlsx, .ods; - for stdin; a pipe is read as CSV.",
         show_default=False,
     ),
 ]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import in_quotes, shortened
-from ..solver.scene import INPUTS, MASSES, Input, InTerms, SceneError, parameter_of
+from ..solver.scene import INPUTS, MASSES, Input, InTerms, SceneError
 from ..tables.headings import (
     EMPTY,
     LONGEST_HEADING,
@@ -56,9 +56,14 @@ LIKE_MASS = re.compile(
     r"|\w*груз\w*)(?:\b|_)",
     re.IGNORECASE,
 )
-LARGE = {"m1": ("masses", "0.5", "g"), "m2": ("masses", "0.5", "g"), "drop": ("heights of fall", "10", "cm")}
-LARGE |= {"time": ("times", "1000", "ms")}
-"""The numbers, in SI units, from which a laboratory may have left out this unit."""
+LARGE_MASSES = Fraction(1, 2), "some masses are 0.5 kg or more; if they are in g, say so, as in m1 (g)."
+LARGE = {
+    "m1": LARGE_MASSES,
+    "m2": LARGE_MASSES,
+    "drop": (10, "some heights of fall are 10 m or more; if they are in cm, say so, as in drop (cm)."),
+    "time": (1000, "some times are 1000 s or more; if they are in ms, say so, as in time (ms)."),
+}
+"""The numbers, in SI units, from which a laboratory may have left out a smaller unit, and the remark."""
 CART = 5
 """The ratio of m1 to each m2 above which m1 may be a cart, or a cylinder that is turned."""
 ZERO = re.compile(r"[+-]?0+([.,]0*)?( ?[^\W\d_]+)?|")
@@ -141,17 +146,17 @@ def read_runs(
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     words = [f"{in_quotes(sheet.columns[0])} as the numbers of rows"] if numbers else []
     words += [f"{in_quotes(column)} as a label" for column in others]
+    by = {x: given[x].value for x in ("R", "g") if x in given and not given[x].uncertainty}
+    given = {x: _in_own_terms(x, read, by) for x, read in given.items() if x in (*MASSES, "drop", "hanger")}
     hanger = given.get("hanger")
     if hanger:
         sides = " and ".join(heading.name for heading in headings if heading.name in MASSES)
         words.append(f"{shortened(str(hanger.given))} of hanger added to {sides}")
-    own_units = [all(row[x] in EMPTY or OWN_UNIT.search(row[x]) for row in sheet.rows) for x in places]
-    with_units = [place for place, own in zip(places, own_units, strict=True) if own]
+    with_units = [x for x in places if all(row[x] in EMPTY or OWN_UNIT.search(row[x]) for row in sheet.rows)]
     remarks = read_as(headings, sheet.separator, comma, [*words, *sheet.remarks], with_units)
-    by = {x: given[x].value for x in ("R", "g") if x in given and not given[x].uncertainty}
     # The uncertainty of what is shared counts for all runs together.
-    shared = {x: (_in_own_terms(given[x], by), Fraction(0)) for x in (*MASSES, "drop") if x in given}
-    large = {LARGE["drop"]} if "drop" in given and _is_large("drop", given["drop"], "") else set()
+    shared = {x: (read.value, Fraction(0)) for x, read in given.items() if x != "hanger"}
+    large = _large("drop", given["drop"], "") if "drop" in given else set[str]()
     same, runs, traces = dict[str, Input](), RowsOfRuns(), list[int]()
     numbers = numbers or list(range(1, len(sheet.rows) + 1))
     for number, row in zip(numbers, sheet.rows, strict=True):
@@ -160,12 +165,11 @@ def read_runs(
             continue
         inputs, measured = dict[str, Number](), Numbers()
         for heading, cell in _read_row(number, row, headings, comma, by):
-            if _is_large(heading.name, cell, heading.unit):
-                large.add(LARGE[heading.name])
+            large |= _large(heading.name, cell, heading.unit)
             if heading.name in MEASURED:
                 measured[f"{number}:{heading.name[0]}{heading.number}"] = cell[:2]
             elif heading.name not in CONDITIONS:
-                extra = _in_own_terms(hanger, by) if hanger and heading.name in MASSES else 0
+                extra = hanger.value if hanger and heading.name in MASSES else 0
                 inputs[heading.name] = cell.value + extra, cell.uncertainty
             elif same.setdefault(heading.name, cell)[:2] != cell[:2]:
                 why = f"differs between rows; a fit takes one {heading.name}, so fit the rows of each apart"
@@ -184,40 +188,39 @@ def read_runs(
     left_out = [*map(str, without)]
     if left_out:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
-    for what, least, unit in sorted(large):
-        name = next(name for name in LARGE if LARGE[name][0] == what)
-        size = f"some {what} are {least} {parameter_of(name).unit} or more"
-        remarks.append(f"{size}; if they are in {unit}, say so, as in {name} ({unit}).")
-    found = _as_columns(kind, runs, numbers, left_out)
-    fixed, hanging = (sorted(found.given[mass], reverse=mass == "m2") for mass in MASSES)
-    if fixed[0] == fixed[-1] > CART * hanging[0]:
-        remarks.append(
-            f"m1 is {fixed[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1."
-        )
-    return found._replace(remarks=remarks, same=same)
+    remarks += sorted(large)
+    result = _as_columns(kind, runs, numbers, left_out)
+    m1, m2 = (result.given[mass] for mass in MASSES)
+    if min(m1) == max(m1) > CART * max(m2):
+        remarks.append(f"m1 is {m1[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1.")
+    return result._replace(remarks=remarks, same=same)
 
 
-def _in_own_terms(shared: Input, by: Mapping[str, Any]) -> Any:
-    """Return what all runs share, converted by R or g if it is in other terms. Raises SceneError."""
-    if not isinstance(shared.value, InTerms):
-        return shared.value
-    number, terms = shared.value
+def _in_own_terms(name: str, read: Input, by: Mapping[str, Any]) -> Input:
+    """Return an input, converted ``by`` R or g if it is in other terms. Raises SceneError."""
+    if not isinstance(read.value, InTerms):
+        return read
+    number, terms = read.value
     if terms.by not in by:
-        raise SceneError("hanger", shared.given, f"is {terms.words}; give a mass, in kg")
-    return terms.own(number, by[terms.by])
+        rule = f"is {terms.words}, which needs {terms.by} without an uncertainty"
+        raise SceneError(name, read.given, rule)
+    value, uncertainty = (terms.own(x, by[terms.by]) for x in (number, read.uncertainty))
+    return Input(value, uncertainty, read.given)
 
 
-def _is_large(name: str, cell: Input, unit: str) -> bool:
-    """Decide whether a number may be in a smaller unit that its heading and its cell leave out."""
-    has_unit = unit or OWN_UNIT.search(str(cell.given))
-    return name in LARGE and not has_unit and bool(cell.value >= Fraction(LARGE[name][1]))
+def _large(name: str, cell: Input, unit: str) -> set[str]:
+    """Return the remark on a number that may be in a smaller unit, which heading and cell leave out."""
+    if name not in LARGE or unit or OWN_UNIT.search(str(cell.given)):
+        return set()
+    least, remark = LARGE[name]
+    return {remark} if cell.value >= least else set()
 
 
 def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Sequence[str]) -> Runs:
     """Return runs without the rows and cells of these words, unless all of a run are left out."""
     measured = [cells for _, cells in runs.values()]
-    there = {*map(str, numbers), *(cell for cells in measured for cell in cells)}
-    if absent := [word for word in words if word not in there]:
+    known = {*map(str, numbers), *(cell for cells in measured for cell in cells)}
+    if absent := [word for word in words if word not in known]:
         rows = f"{numbers[0]} to {numbers[-1]}"
         rule = f"is neither a row, {rows}, nor a measurement, as {next(iter(measured[0]))}"
         raise SceneError("without", absent[0], rule)
@@ -247,7 +250,7 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Seq
 
 def behind_an_error(remarks: Sequence[str]) -> str:
     """Return how the table was read, and which rows are not used, to stand behind an error."""
-    return "".join(f"; {one.rstrip('.')}" for one in remarks)
+    return "".join(f"; {remark.rstrip('.')}" for remark in remarks)
 
 
 # Headings
@@ -283,7 +286,8 @@ def _check(
 ) -> Kind:
     """Return what was measured, if runs have all columns. Raises Unreadable, SceneError."""
     names = {heading.name for heading in headings}
-    kinds = {(bool(one.number), one.name): one.column for one in headings if one.name in MEASURED}
+    measured = [heading for heading in headings if heading.name in MEASURED]
+    kinds = {(bool(heading.number), heading.name): heading.column for heading in measured}
     if len(kinds) > 1:
         column, beside, *_ = (kinds[kind] for kind in sorted(kinds))
         why = "may be computed, as a mean is; number repeats, as t1, t2"
@@ -305,27 +309,22 @@ def _missing(
     missing: Sequence[str], sheet: Sheet, unread: Unread, named: Mapping[str, str]
 ) -> tuple[str, str]:
     """Return which columns runs need, those of the table, and options that name what is missing."""
-    left, ways, lacking = [*unread.values()], dict(named), list[str]()
-    options = list[str]()
+    left, ways, lacking, others = [*unread.values()], dict(named), list[str](), list[str]()
     for name in missing:
-        if name == "drop" and "a" in lacking:
-            continue
         fitting = _fitting(name, left)
-        if not fitting and name == "t" and (fitting := _fitting("a", left)):
+        if name == "t" and not fitting and (fitting := _fitting("a", left)):
             name = "a"
+        elif name == "drop" and "a" in lacking:
+            continue
         fitting = fitting if name in ("t", "a") else fitting[:1]
         left = [column for column in left if column not in fitting]
         ways |= {column: name for column, _ in fitting}
         lacking.append(name)
         if not fitting:
-            alone = (
-                f"--{name} 0"
-                if name in MASSES and not left and missing.count("m1") + missing.count("m2") == 1
-                else ""
-            )
-            option = "--drop HEIGHT" if name == "drop" else f"--column {name}=HEADING"
-            options.append(alone or option)
-    options = [f"--column {quote(f'{name}={column}')}" for column, name in ways.items()] + options
+            is_alone = not left and len({*missing} & {*MASSES}) == 1
+            without_column = {"drop": "--drop HEIGHT"} | ({x: f"--{x} 0" for x in MASSES} if is_alone else {})
+            others.append(without_column.get(name, f"--column {name}=HEADING"))
+    options = [*(f"--column {quote(f'{name}={column}')}" for column, name in ways.items()), *others]
     why = f"runs need m1, m2, and a, or t with the height of fall, drop; there are {listed(sheet.columns)}"
     why += f"; {', '.join(lacking)} {'are' if lacking[1:] else 'is'} missing"
     is_turned = unread and all(LIKE_NUMBER.match(column) for column, _ in unread.values())
@@ -338,13 +337,9 @@ def _missing(
 def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
     """Return the unread columns that may hold a quantity, by name, or by their unit or that of a cell."""
     meaning = Heading(0, "", SPELLINGS[name])
-    by_name = [one for one in unread if name_before_uncertainty(one[0], VOCABULARY) == meaning.name]
-    by_unit = [
-        one
-        for one in unread
-        if is_unit(unit_within(one[0], meaning), meaning) or is_unit(one[1].lstrip("0123456789., "), meaning)
-    ]
-    return by_name or by_unit
+    by_name = [x for x in unread if name_before_uncertainty(x[0], VOCABULARY) == meaning.name]
+    units = {x: (unit_within(x[0], meaning), x[1].lstrip("0123456789., ")) for x in unread}
+    return by_name or [x for x in unread if any(is_unit(unit, meaning) for unit in units[x])]
 
 
 def _others(headings: Sequence[Heading], unread: Unread, named: Mapping[str, str]) -> list[str]:
@@ -373,20 +368,17 @@ def in_words(cell: str) -> str:
     return f"row {cell.replace(':', ': ', 1)}"
 
 
-def in_range(one: Input) -> bool:
+def in_range(read: Input) -> bool:
     """Decide if a number, and its uncertainty, are 0 or of a size whose squares are doubles."""
     low, high = MEASURABLE
-    sizes = (getattr(one.value, "number", one.value), one.uncertainty)
+    sizes = (getattr(read.value, "number", read.value), read.uncertainty)
     return all(low <= abs(size) <= high for size in sizes if size)
 
 
 def _begins_trace(row: Sequence[str], headings: Sequence[Heading]) -> bool:
     """Decide whether a row has a height and a time of 0, as where a trace of positions begins."""
-    cells = [(heading.name, row[heading.place].strip()) for heading in headings]
-    zeros = {name for name, cell in cells if ZERO.fullmatch(cell)}
-    return {"drop", "time"} <= zeros and all(
-        ZERO.fullmatch(cell) for name, cell in cells if name in ("drop", "time")
-    )
+    cells = [(heading.name, row[heading.place]) for heading in headings if heading.name in ("drop", "time")]
+    return len({name for name, _ in cells}) == 2 and all(ZERO.fullmatch(cell.strip()) for _, cell in cells)
 
 
 def _read_row(
@@ -397,17 +389,20 @@ def _read_row(
     Numbers in other terms are converted ``by`` R or g, or by that of the row.
     """
     cells: list[tuple[Heading, Input]] = []
-    by = {**by}
     for heading in sorted(headings, key=lambda heading: heading.name not in CONDITIONS):
+        name = heading.name
         try:
-            cell = read_cell(heading, row, comma, None if heading.name in CONDITIONS else by)
-            if not cell and heading.name not in MEASURED:
-                raise SceneError(heading.name, None, "is missing; write it in each row")
-            if cell and not in_range(cell):
-                raise SceneError(heading.name, cell.given, OUT_OF_RANGE)
+            if not (cell := read_cell(heading, row, comma)):
+                if name in MEASURED:
+                    continue
+                raise SceneError(name, None, "is missing; write it in each row")
+            if name in CONDITIONS:
+                by = {**by, name: cell.value}
+            else:
+                cell = _in_own_terms(name, cell, by)
+            if not in_range(cell):
+                raise SceneError(name, cell.given, OUT_OF_RANGE)
         except SceneError as error:
             raise Unreadable(f"row {number}: {error}; {NO_RUN}") from None
-        if cell:
-            cells.append((heading, cell))
-            by |= {heading.name: cell.value} if heading.name in CONDITIONS else {}
+        cells.append((heading, cell))
     return cells

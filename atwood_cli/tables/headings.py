@@ -15,7 +15,7 @@ from fractions import Fraction
 from io import StringIO
 from itertools import islice
 from shlex import quote
-from typing import Any, NamedTuple
+from typing import NamedTuple
 from unicodedata import normalize
 
 from ..numbers.text import in_quotes, without_blanks
@@ -102,26 +102,26 @@ def read_headings(
     headings: dict[tuple[str, str], Heading] = {}
     uncertain: list[Heading] = []
     for place, column in enumerate(columns):
-        found = None if column in labels else _meaning(column, vocabulary, named)
-        if not found:
+        heading = None if column in labels else _meaning(column, vocabulary, named)
+        if not heading:
             continue
-        found = found._replace(place=place)
-        if found.uncertain:
-            uncertain.append(found)
+        heading = heading._replace(place=place)
+        name, number = heading.name, heading.number
+        if heading.uncertain:
+            uncertain.append(heading)
             continue
-        is_repeat = found.name in vocabulary.repeated
-        key = found.name, found.number
-        if is_repeat and column in named and not found.number:  # its user may name repeats alike
-            key = found.name, str(1 + sum(own.name == found.name for own in headings.values()))
-        if same := headings.get(key):
+        is_repeat = name in vocabulary.repeated
+        if is_repeat and column in named and not number:  # its user may name repeats alike
+            number = str(1 + sum(own.name == name for own in headings.values()))
+        if same := headings.get((name, number)):
             way = "give each repeat its own number" if is_repeat else "rename one"
-            one, other = (same.column, column) if column in named else (column, same.column)
-            why = f"holds {found.name}, as {in_quotes(other)} does; {way}"
-            raise refused(one, why) if one != other else Unreadable(f"column {in_quotes(one)} {why}")
-        terms = terms_of(parameter_of(found.name), found.unit)
-        headings[key] = found._replace(number=key[1], factor=unit_factor(found), terms=terms)
-    for found in uncertain:
-        _add_uncertainty(headings, found)
+            which, other = (same.column, column) if column in named else (column, same.column)
+            why = f"holds {name}, as {in_quotes(other)} does; {way}"
+            raise refused(which, why) if which != other else Unreadable(f"column {in_quotes(which)} {why}")
+        terms = terms_of(parameter_of(name), heading.unit)
+        headings[name, number] = heading._replace(number=number, factor=unit_factor(heading), terms=terms)
+    for heading in uncertain:
+        _add_uncertainty(headings, heading)
     return list(headings.values())
 
 
@@ -153,8 +153,8 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
         name, _, heading = word.partition("=")
         meaning = _meaning(name, vocabulary, {})
         if not heading or heading in named or not meaning or not meaning.name:
-            there = ", ".join(dict.fromkeys(vocabulary.names.values()))
-            rule = f"must be NAME=HEADING, as m1='Masse 1 (g)', each heading once; names are {there}"
+            names = ", ".join(dict.fromkeys(vocabulary.names.values()))
+            rule = f"must be NAME=HEADING, as m1='Masse 1 (g)', each heading once; names are {names}"
             raise SceneError("column", word, rule)
         named[heading] = name
     return named
@@ -233,32 +233,35 @@ def _named(word: str, vocabulary: Vocabulary) -> Heading | None:
     """Return the meaning of a name without its unit; None if it is not known."""
     if vocabulary.uncertain and word in OF_COLUMN_BEFORE:
         return Heading(0, "", "", uncertain=True)
-    found = UNCERTAINTY.fullmatch(word) if vocabulary.uncertain else None
-    key = re.sub(r"[\s_]", "", normalize("NFKC", (found[1] or found[2]) if found else word))
+    match = UNCERTAINTY.fullmatch(word) if vocabulary.uncertain else None
+    key = re.sub(r"[\s_]", "", normalize("NFKC", (match[1] or match[2]) if match else word))
     letters = key if key in vocabulary.names else key.rstrip("0123456789")
     name = vocabulary.names.get(letters, "")
-    if letters != key and name not in vocabulary.repeated:
+    if not name or (letters != key and name not in vocabulary.repeated):
         return None
-    return Heading(0, "", name, key[len(letters) :], uncertain=bool(found)) if name else None
+    return Heading(0, "", name, key[len(letters) :], uncertain=bool(match))
 
 
-def _add_uncertainty(headings: dict[tuple[str, str], Heading], found: Heading) -> None:
+def _add_uncertainty(headings: dict[tuple[str, str], Heading], u: Heading) -> None:
     """Give quantities their column of uncertainties. Raises Unreadable."""
-    owners = [own for own in headings.values() if own.place == found.place - 1]
-    if found.name:
-        namesakes = [own for own in headings.values() if own.name == found.name]
-        owners = [own for own in namesakes if found.number in ("", own.number)]
+    owners = [
+        own
+        for own in headings.values()
+        if (own.name == u.name and u.number in ("", own.number) if u.name else own.place == u.place - 1)
+    ]
     if not owners:
-        raise refused(found.column, "could be an uncertainty, but no column is what it would be of")
+        raise refused(u.column, "could be an uncertainty, but no column is what it would be of")
     for own in owners:
         if own.u:
-            raise refused(found.column, f"is a second uncertainty of {own.name}")
-        plain = found.unit in ("", PERCENT)
-        if not plain and terms_of(parameter_of(own.name), found.unit) != own.terms:
-            raise refused(found.column, f"has another kind of unit than {in_quotes(own.column)}")
-        factor = own.factor if plain else unit_factor(found._replace(name=own.name))
-        u = found._replace(name=own.name, number=own.number, factor=factor)
-        headings[own.name, own.number] = own._replace(u=u)
+            raise refused(u.column, f"is a second uncertainty of {own.name}")
+        its_u = u._replace(name=own.name, number=own.number)
+        if u.unit in ("", PERCENT):
+            its_u = its_u._replace(factor=own.factor)
+        elif terms_of(parameter_of(own.name), u.unit) == own.terms:
+            its_u = its_u._replace(factor=unit_factor(its_u))
+        else:
+            raise refused(u.column, f"has another kind of unit than {in_quotes(own.column)}")
+        headings[own.name, own.number] = own._replace(u=its_u)
 
 
 def unit_factor(heading: Heading) -> Fraction:
@@ -346,13 +349,10 @@ def pointed(name: str, cell: str, comma: bool) -> str:
     return (cell.replace(",", ".") if comma else cell).strip()
 
 
-def read_cell(
-    heading: Heading, row: Sequence[str], comma: bool, by: Mapping[str, Any] | None = None
-) -> Input | None:
+def read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:
     """Return the number in a column, exact and in SI units, with its uncertainty; None if the cell is empty.
 
-    A unit in the cell goes before the unit of the heading. A number in other terms, as a weight, is converted
-    ``by`` R or g, or else stays in its terms. Raises SceneError.
+    A unit in the cell goes before the unit of the heading. Raises SceneError.
     """
     cell = row[heading.place]
     text = pointed(heading.name, cell, comma)
@@ -373,14 +373,7 @@ def read_cell(
     elif heading.stated and not uncertainty:
         stated = heading._replace(unit="")
         uncertainty = _read_uncertainty(stated, heading.stated.replace(",", "."), value, False)
-    if terms and by is None:
-        return Input(InTerms(value, terms), uncertainty, cell)
-    if terms and by is not None:
-        if terms.by not in by:
-            rule = f"is {terms.words}, which needs {terms.by} without an uncertainty"
-            raise SceneError(heading.name, cell, rule)
-        value, uncertainty = (terms.own(number, by[terms.by]) for number in (value, uncertainty))
-    return Input(value, uncertainty, cell)
+    return Input(InTerms(value, terms) if terms else value, uncertainty, cell)
 
 
 def _read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool) -> Fraction:
