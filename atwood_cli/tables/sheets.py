@@ -12,12 +12,10 @@ from typing import Any, NamedTuple
 from ..numbers.text import in_quotes, without_blanks
 from .headings import SEPARATORS, Vocabulary, best_header, recognised
 from .sources import Unreadable, blocks_of, whole_lines
-from .workbooks import opened_table
+from .workbooks import MOST_BYTES, opened_table
 
 MOST_ABOVE = 40
 """The most rows of titles above the headings."""
-MOST_BYTES = 64 << 20
-"""The most bytes of a table of runs, unpacked: a laboratory has thousands of rows."""
 UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 """The first bytes of a file in UTF-16, as Excel writes its "Unicode text"."""
 COMMENTS = "lines that begin with # left out"

@@ -7,8 +7,8 @@ is an error of its cell where a number is read, as dates are. A cell merged over
 import csv
 import re
 import zlib
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from collections.abc import Callable
+from contextlib import ExitStack, suppress
 from functools import partial
 from io import BytesIO, StringIO
 from typing import IO
@@ -20,7 +20,7 @@ from ..solver.scene import SceneError
 from .sources import BLOCK_BYTES, WORKBOOKS, Unreadable, opened
 
 MOST_BYTES = 64 << 20
-"""The most bytes of a workbook, unpacked."""
+"""The most bytes of a workbook, or a table of runs, unpacked: a laboratory has thousands of rows."""
 MOST_CELLS = 4 << 20
 """The most cells of a sheet, empty ones included: few bytes can stand for very many."""
 DAY = 86_400  # seconds
@@ -30,7 +30,10 @@ PERCENTS = {9, 10}
 
 Rows = dict[int, dict[int, str]]
 """The texts of cells that are not empty, by row and column."""
-Sheets = dict[str, tuple[bool, Callable[[], Rows]]]
+Merged = dict[tuple[int, int], int]
+"""The last rows of merged cells, by the place of the first."""
+Cells = tuple[Rows, Merged]
+Sheets = dict[str, tuple[bool, Callable[[], Cells]]]
 """Whether a sheet is hidden, and what reads it, by its name."""
 
 
@@ -60,11 +63,11 @@ def workbook_as_csv(file: IO[bytes], name: str | None) -> tuple[bytes, list[str]
                 raise Unreadable(f"it is larger than {MOST_BYTES >> 20} MB, unpacked")
             sheets = (_xlsx if "xl/workbook.xml" in archive.namelist() else _ods)(partial(_part, archive))
             hidden = {sheet: " (hidden)" if is_hidden else "" for sheet, (is_hidden, _) in sheets.items()}
-            there = ", ".join(f"{in_quotes(sheet)}{hidden[sheet]}" for sheet in sheets)
+            names = ", ".join(f"{in_quotes(sheet)}{hidden[sheet]}" for sheet in sheets)
             shown = name or next((sheet for sheet in sheets if not hidden[sheet]), next(iter(sheets), ""))
             if shown not in sheets:
-                raise Unreadable(f"there is no sheet {in_quotes(shown)}; there are {there}")
-            rows = sheets[shown][1]()
+                raise Unreadable(f"there is no sheet {in_quotes(shown)}; there are {names}")
+            rows, merged = sheets[shown][1]()
     except (BadZipFile, LookupError, ParseError, ValueError, zlib.error, EOFError, OSError) as error:
         why = getattr(error, "strerror", None) or str(error)
         raise Unreadable(f"it is damaged, has a password, or is no workbook: {why}") from None
@@ -73,10 +76,11 @@ def workbook_as_csv(file: IO[bytes], name: str | None) -> tuple[bytes, list[str]
     width = 1 + max((column for row in rows.values() for column in row), default=0)
     if width * len(rows) > MOST_CELLS:
         raise Unreadable(f"sheet {in_quotes(shown)} has more than {MOST_CELLS >> 20} million cells")
+    _fill(rows, merged)
     buffer = StringIO()
     cells = ([rows[row].get(column, "") for column in range(width)] for row in sorted(rows))
     csv.writer(buffer, lineterminator="\n").writerows(cells)
-    return buffer.getvalue().encode(), [f"sheet {in_quotes(shown)} of {there}"][: len(sheets) - 1]
+    return buffer.getvalue().encode(), [f"sheet {in_quotes(shown)} of {names}"][: len(sheets) - 1]
 
 
 def _part(archive: ZipFile, name: str) -> Element:
@@ -88,9 +92,14 @@ def _part(archive: ZipFile, name: str) -> Element:
     return fromstring(content)
 
 
-def _each(element: Element, *names: str) -> Iterator[Element]:
-    """Yield the elements within one that have these names in any namespace."""
-    return (inner for inner in element.iter() if _local(inner.tag) in names)
+def _fill(rows: Rows, merged: Merged) -> None:
+    """Give cells that are merged over rows the text of the first."""
+    above: dict[int, tuple[int, str]] = {}
+    for number, row in sorted(rows.items()):
+        for column, (last, text) in above.items():
+            if number <= last:
+                row.setdefault(column, text)
+        above |= {x: (merged[number, x], row[x]) for x in row if merged.get((number, x), 0) > number}
 
 
 def _local(tag: str) -> str:
@@ -117,50 +126,43 @@ def _number(value: str, kind: str, suffix: str = "") -> str:
 
 
 def _xlsx(part: Callable[[str], Element]) -> Sheets:
-    targets = {_get(one, "Id"): _get(one, "Target") for one in part("xl/_rels/workbook.xml.rels")}
+    targets = {_get(link, "Id"): _get(link, "Target") for link in part("xl/_rels/workbook.xml.rels")}
     sheets = Sheets()
-    for sheet in _each(part("xl/workbook.xml"), "sheet"):
+    for sheet in part("xl/workbook.xml").iterfind(".//{*}sheet"):
         target = targets[_get(sheet, "id")]
         path = target[1:] if target.startswith("/") else f"xl/{target}"
-        sheets[_get(sheet, "name")] = _get(sheet, "state") not in ("", "visible"), partial(_rows, part, path)
+        is_hidden = _get(sheet, "state") not in ("", "visible")
+        sheets[_get(sheet, "name")] = is_hidden, partial(_cells_of_xlsx, part, path)
     return sheets
 
 
-def _rows(part: Callable[[str], Element], path: str) -> Rows:
-    """Return the cells of a sheet of .xlsx."""
+def _cells_of_xlsx(part: Callable[[str], Element], path: str) -> Cells:
     kinds, texts = [("", "")], list[str]()
-    try:
+    with suppress(KeyError):  # a workbook may have neither
         kinds = _formats(part("xl/styles.xml"))
-        texts = ["".join(_runs(text)) for text in _each(part("xl/sharedStrings.xml"), "si")]
-    except KeyError:  # a workbook may have neither
-        pass
+        texts = [_text_of_xlsx(text) for text in part("xl/sharedStrings.xml").iterfind(".//{*}si")]
     sheet, rows = part(path), Rows()
-    for cell in _each(sheet, "c"):
-        value = "".join(inner.text or "" for inner in _each(cell, "v"))
-        formula = [f"={inner.text or ''}" for inner in _each(cell, "f")]
+    for cell in sheet.iterfind(".//{*}c"):
+        value, formula = cell.findtext("{*}v", ""), cell.findtext("{*}f")
         match _get(cell, "t"):
             case "s":
                 value = texts[int(value)]
             case "inlineStr":
-                value = "".join(text for inner in _each(cell, "is") for text in _runs(inner))
+                value = "".join(map(_text_of_xlsx, cell.iterfind("{*}is")))
             case "b":
                 value = "TRUE" if value == "1" else "FALSE"
             case "" | "n" if value:
                 value = _number(value, *kinds[int(_get(cell, "s") or 0)])
-        if value or formula:
+        if value or formula is not None:
             row, column = _place(_get(cell, "r"))
-            rows.setdefault(row, {})[column] = value or formula[0]
-    for merged in _each(sheet, "mergeCell"):
-        (top, column), (bottom, _) = (_place(corner) for corner in _get(merged, "ref").split(":"))
-        for row in rows.keys() & set(range(top + 1, bottom + 1)):
-            rows[row].setdefault(column, rows.get(top, {}).get(column, ""))
-    return rows
+            rows.setdefault(row, {})[column] = value or f"={formula}"
+    corners = [_get(merged, "ref").split(":") for merged in sheet.iterfind(".//{*}mergeCell")]
+    return rows, {_place(first): _place(last)[0] for first, last in corners}
 
 
-def _runs(text: Element) -> Iterator[str]:
-    """Yield the runs of a text, without the ruby characters above it."""
-    for child in text:
-        yield from (inner.text or "" for inner in _each(child, "t") if _local(child.tag) in ("t", "r"))
+def _text_of_xlsx(text: Element) -> str:
+    """Return a text, without the ruby characters above it."""
+    return "".join(run.text or "" for path in ("{*}t", "{*}r/{*}t") for run in text.iterfind(path))
 
 
 def _place(reference: str) -> tuple[int, int]:
@@ -174,17 +176,16 @@ def _place(reference: str) -> tuple[int, int]:
 
 def _formats(styles: Element) -> list[tuple[str, str]]:
     """Return for each style of cells whether it shows dates or percent, and the words behind a number."""
-    codes = {int(_get(one, "numFmtId")): _get(one, "formatCode") for one in _each(styles, "numFmt")}
+    codes = {int(_get(x, "numFmtId")): _get(x, "formatCode") for x in styles.iterfind(".//{*}numFmt")}
     formats = []
-    for style in (style for cells in _each(styles, "cellXfs") for style in cells):
+    for style in styles.iterfind(".//{*}cellXfs/*"):
         number = int(_get(style, "numFmtId") or 0)
         code = codes.get(number, "").split(";")[0]
         bare = re.sub(r'"[^"]*"|\\.|\[[^hms\]][^\]]*\]|General|Standard', "", code)
+        is_date = number in DATES or re.search("[dmyhs]", bare, re.IGNORECASE)
         is_percent = number in PERCENTS or "%" in bare
-        kind = (
-            "date" if number in DATES or re.search("[dmyhs]", bare, re.IGNORECASE) else "percent" * is_percent
-        )
         words = re.search(r'(?:"([^"]*)"|\\(.))$', code)
+        kind = "date" if is_date else "percent" if is_percent else ""
         formats.append((kind, (words[1] or words[2] or "") if words else ""))
     return formats
 
@@ -196,43 +197,36 @@ def _ods(part: Callable[[str], Element]) -> Sheets:
     content = part("content.xml")
     hidden = {
         _get(style, "name")
-        for style in _each(content, "style")
-        if any(_get(inner, "display") == "false" for inner in _each(style, "table-properties"))
+        for style in content.iterfind(".//{*}style")
+        if any(_get(x, "display") == "false" for x in style.iterfind("{*}table-properties"))
     }
-    tables = _each(content, "table")
-    return {_get(one, "name"): (_get(one, "style-name") in hidden, partial(_table, one)) for one in tables}
+    tables = content.iterfind(".//{*}table")
+    return {_get(x, "name"): (_get(x, "style-name") in hidden, partial(_cells_of_ods, x)) for x in tables}
 
 
-def _table(table: Element) -> Rows:
-    """Return the cells of a sheet of .ods."""
-    rows, number, count = Rows(), 0, 0
-    above: dict[int, tuple[int, str]] = {}
-    for row in _each(table, "table-row"):
+def _cells_of_ods(table: Element) -> Cells:
+    rows, merged, number, count = Rows(), Merged(), 0, 0
+    for row in table.iterfind(".//{*}table-row"):
         column, cells = 0, dict[int, str]()
+        rows_alike = int(_get(row, "number-rows-repeated") or 1)
         for cell in row:
-            text, repeat = _text(cell), int(_get(cell, "number-columns-repeated") or 1)
-            if _local(cell.tag) == "covered-table-cell" and above.get(column, (0, ""))[0] > number:
-                text = above[column][1]
-            if spanned := int(_get(cell, "number-rows-spanned") or 0):
-                above[column] = number + spanned, text
-            count += repeat if text else 0
-            if count > MOST_CELLS:
-                raise Unreadable(f"it has more than {MOST_CELLS >> 20} million cells")
-            cells |= dict.fromkeys(range(column, column + repeat), text) if text else {}
+            text = "" if _local(cell.tag) == "covered-table-cell" else _text_of_ods(cell)
+            repeat = int(_get(cell, "number-columns-repeated") or 1)
+            merged[number, column] = number + int(_get(cell, "number-rows-spanned") or 1) - 1
+            if text:
+                count += repeat * rows_alike
+                if count > MOST_CELLS:
+                    raise Unreadable(f"it has more than {MOST_CELLS >> 20} million cells")
+                cells |= dict.fromkeys(range(column, column + repeat), text)
             column += repeat
-        repeat = int(_get(row, "number-rows-repeated") or 1)
-        count += len(cells) * (repeat - 1)
-        if cells and count <= MOST_CELLS:
-            rows |= {number + i: cells for i in range(repeat)}
-        number += repeat
-    if count > MOST_CELLS:
-        raise Unreadable(f"it has more than {MOST_CELLS >> 20} million cells")
-    return rows
+        rows |= {number + i: {**cells} for i in range(rows_alike if cells else 0)}
+        number += rows_alike
+    return rows, merged
 
 
-def _text(cell: Element) -> str:
-    """Return what a cell of .ods holds, without its comments."""
-    shown = "\n".join("".join(line.itertext()) for line in cell if _local(line.tag) == "p")
+def _text_of_ods(cell: Element) -> str:
+    """Return what a cell holds, without its comments."""
+    shown = "\n".join("".join(line.itertext()) for line in cell.iterfind("{*}p"))
     match next((value for key, value in cell.items() if key.endswith("office:1.0}value-type")), ""):
         case "float" | "currency":
             unit = re.search(r" ?[^\W\d_][^\d]*$", shown)
