@@ -107,7 +107,7 @@ def fit_of(
 
     shared = {x: _read_given(x, value) for x, value in given.items() if value is not None}
     inputs: dict[str, Input] = {x: read_input(x, None) for x in INPUTS}
-    inputs |= {x: one for x, one in shared.items() if x not in (*MASSES, "hanger")}
+    inputs |= {x: read for x, read in shared.items() if x not in (*MASSES, "hanger")}
     conditions_of(inputs)  # raises before the table is read
     named = read_named(map(without_blanks, columns), VOCABULARY)
     if not {"g", "gravity"} & {*divided(find)}:
@@ -124,7 +124,6 @@ def _read_given(name: str, value: Given) -> Input:
     except SceneError as error:
         raise SceneError(name, value, error.rule) from None
     if name in (*MASSES, "hanger") and read.uncertainty:
-        raise SceneError(
-            name, value, "has an uncertainty, which no mass of all runs may have; state it in cells"
-        )
+        rule = "has an uncertainty, which no mass of all runs may have; state it in cells"
+        raise SceneError(name, value, rule)
     return read

@@ -103,8 +103,7 @@ class Runs(NamedTuple):
 
     def rows_in_words(self, *runs: int) -> str:
         """Return the rows of these runs for a sentence: row 1, or rows 1, 2."""
-        rows = [str(row) for row in sorted(row for i in runs for row in self.rows[i])]
-        return f"row{'s' if rows[1:] else ''} {', '.join(rows)}"
+        return in_words(*sorted(row for i in runs for row in self.rows[i]))
 
 
 Number = tuple[Fraction, Fraction]
@@ -134,18 +133,19 @@ def read_runs(
     headings = _headings(sheet, labels, named)
     numbers = _numbers_of_rows(sheet, headings)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
-    unread: Unread = {}
-    for place, (column, *cells) in enumerate(zip(sheet.columns, *sheet.rows, strict=True)):
-        is_known = place in places or column in labels or (numbers and not place)
-        if not is_known and (cell := next(filter(LIKE_NUMBER.match, cells), "")):
-            unread[place] = column, cell
+    known = {*places, 0} if numbers else {*places}
+    unread = {
+        place: (column, cell)
+        for place, (column, *cells) in enumerate(zip(sheet.columns, *sheet.rows, strict=True))
+        if not (place in known or column in labels) and (cell := next(filter(LIKE_NUMBER.match, cells), ""))
+    }
     kind = _check(sheet, headings, unread, given, named)
     if kind == "a":  # a height has no effect
         headings = [heading for heading in headings if heading.name != "drop"]
-    others = _others(headings, unread, named)
+    _check_labels(headings, unread, named)
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     words = [f"{in_quotes(sheet.columns[0])} as the numbers of rows"] if numbers else []
-    words += [f"{in_quotes(column)} as a label" for column in others]
+    words += [f"{in_quotes(column)} as a label" for column, _ in unread.values()]
     by = {x: given[x].value for x in ("R", "g") if x in given and not given[x].uncertainty}
     given = {x: _in_own_terms(x, read, by) for x, read in given.items() if x in (*MASSES, "drop", "hanger")}
     hanger = given.get("hanger")
@@ -181,8 +181,7 @@ def read_runs(
         else:
             remarks.append(f"row {number} has no {kind}: it is not used.")
     if traces:
-        rows_ = f"row{'s' if traces[1:] else ''} {', '.join(map(str, traces))}"
-        remarks.append(f"{rows_}: not used, as the height and the time are 0.")
+        remarks.append(f"{in_words(*traces)}: not used, as the height and the time are 0.")
     if not runs:
         raise Unreadable(f"it has no runs{behind_an_error(remarks)}")
     left_out = [*map(str, without)]
@@ -342,30 +341,29 @@ def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, st
     return by_name or [x for x in unread if any(is_unit(unit, meaning) for unit in units[x])]
 
 
-def _others(headings: Sequence[Heading], unread: Unread, named: Mapping[str, str]) -> list[str]:
-    """Return the columns of numbers that are labels. Raises Unreadable for one that could hold a quantity."""
-    measured = {heading.place for heading in headings if heading.name in MEASURED}
-    measured -= {heading.place for heading in headings if heading.column in named}
+def _check_labels(headings: Sequence[Heading], unread: Unread, named: Mapping[str, str]) -> None:
+    """Raise Unreadable for a column of numbers that could hold a quantity, and is no label then."""
+    measured = {own.place for own in headings if own.name in MEASURED and own.column not in named}
+    mass = Heading(0, "", "m1")
     for place, (column, _) in unread.items():
-        unit = unit_within(column, Heading(0, column, "m1"))
+        unit = unit_within(column, mass)
         if column in INPUTS:
             raise refused(column, "has no effect on a fit")
         if not column.strip() and place - 1 in measured:
             raise refused(column, "has numbers and no heading, behind a measurement; give it one")
         if LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING]):
             raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
-        if is_unit(unit, Heading(0, column, "m1")) if unit else LIKE_MASS.search(column[:LONGEST_HEADING]):
+        if is_unit(unit, mass) if unit else LIKE_MASS.search(column[:LONGEST_HEADING]):
             way = ", or give it as --hanger if it hangs on both sides"
             raise refused(column, "looks like a mass that is not read; add it to m1 or m2", way)
-    return [column for column, _ in unread.values()]
 
 
 # Rows
 
 
-def in_words(cell: str) -> str:
-    """Return where a measurement stands, for a sentence: row 8: t2."""
-    return f"row {cell.replace(':', ': ', 1)}"
+def in_words(*places: int | str) -> str:
+    """Return rows, or where a measurement stands, for a sentence: row 1, rows 1, 2, or row 8: t2."""
+    return f"row{'s' if places[1:] else ''} {', '.join(map(str, places)).replace(':', ': ', 1)}"
 
 
 def in_range(read: Input) -> bool:

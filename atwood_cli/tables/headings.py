@@ -309,7 +309,7 @@ def read_as(
     """
     columns = {own.place: (own.column, own.name, own.unit) for own in headings}
     columns |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit) for own in headings if own.u}
-    given, assumed = dict[str, list[str]](), dict[str, list[str]]()
+    alike = dict[tuple[bool, str], list[str]]()
     has_all = with_units is not None and any(column != name for column, name, _ in columns.values())
     for place, (column, name, unit) in sorted(columns.items()):
         is_open = not unit and "(" not in name and place not in (with_units or ())
@@ -317,15 +317,15 @@ def read_as(
         if column != name or (usual and has_all):
             words = f" as {name}" if column != name else ""
             words += f" in {unit or usual}" if unit or usual else ""
-            (assumed if usual else given).setdefault(words, []).append(in_quotes(column))
-    parts = ["cells separated by semicolons"] if separator == ";" else []
-    parts += ["decimal commas"] if comma else []
-    parts += [f"{', '.join(names)}{words}" for words, names in given.items()] + [*others]
-    said = [", ".join(parts)] if parts else []
-    if assumed:
-        each = ", ".join(f"{', '.join(names)}{words}" for words, names in assumed.items())
-        said.append(f"{each}, as no unit is given")
-    return [f"read as: {'; '.join(said)}."] if said else []
+            alike.setdefault((bool(usual), words), []).append(in_quotes(column))
+    given, assumed = (
+        [", ".join(names) + words for (is_assumed, words), names in alike.items() if is_assumed is which]
+        for which in (False, True)
+    )
+    marks = ["cells separated by semicolons"] * (separator == ";") + ["decimal commas"] * comma
+    clauses = [", ".join([*marks, *given, *others])]
+    clauses += [", ".join([*assumed, "as no unit is given"])] if assumed else []
+    return [f"read as: {'; '.join(filter(None, clauses))}."] if any(clauses) else []
 
 
 # Cells

@@ -92,9 +92,9 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
         if not is_header and COMMENTS not in remarks:
             remarks.append(COMMENTS)
     text = "\n".join(lines)
-    found = {mark: best_header(text, mark, known, MOST_ABOVE) for mark in SEPARATORS}
-    separator = max(found, key=lambda mark: found[mark][:2])
-    if start := found[separator][2]:
+    headers = {mark: best_header(text, mark, known, MOST_ABOVE) for mark in SEPARATORS}
+    separator = max(headers, key=lambda mark: headers[mark][:2])
+    if start := headers[separator][2]:
         remarks.append("lines above the headings left out")
     return Sheet(*_rows(text, separator, start), separator, remarks)
 
