@@ -29,8 +29,8 @@ def check_polars() -> None:
 
     oldest, version = ([*map(int, re.findall(r"\d+", x)[:3])] for x in (OLDEST_POLARS, pl.__version__))
     if version < oldest:
-        found = f"{OLDEST_POLARS} or newer, not {pl.__version__}"
-        raise ImportError(f"this needs polars {found}; pip install --upgrade polars")
+        versions = f"{OLDEST_POLARS} or newer, not {pl.__version__}"
+        raise ImportError(f"this needs polars {versions}; pip install --upgrade polars")
 
 
 def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:

@@ -167,7 +167,9 @@ def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> H
         if meaning and not (is_loose and not is_unit(unit, meaning)):
             if column in named and not unit:
                 unit = unit_within(column, meaning)
-            if unit in NO_UNIT or _is_symbol(unit, meaning, vocabulary):
+            # It may be the symbol of the quantity, as in time (t) or Mass (m).
+            is_symbol = unit == meaning.name[:1] or vocabulary.names.get(unit) == meaning.name
+            if unit in NO_UNIT or (is_symbol and not is_unit(unit, meaning)):
                 unit = ""
             is_short = column in named and len(column) <= LONGEST_HEADING
             stated = re.search(rf"{SIGN}\s*([\d.,]*\d ?%?)", column) if is_short else None
@@ -221,12 +223,6 @@ def is_unit(unit: str, meaning: Heading) -> bool:
         with suppress(Malformed):
             return bool(read_unit(unit, dimension))
     return False
-
-
-def _is_symbol(unit: str, meaning: Heading, vocabulary: Vocabulary) -> bool:
-    """Decide whether what looks like a unit is the symbol of the quantity, as in time (t) or Mass (m)."""
-    is_name = meaning.name and (unit == meaning.name[0] or vocabulary.names.get(unit) == meaning.name)
-    return bool(is_name) and not is_unit(unit, meaning)
 
 
 def _named(word: str, vocabulary: Vocabulary) -> Heading | None:
