@@ -29,7 +29,7 @@ from ..numbers.digits import (
     to_double,
 )
 from ..numbers.interval import ZERO, decimal_context
-from .answers import TOO_SMALL, Answers
+from .answers import TOO_SMALL, Answer, Answers
 from .inverse import found_inputs
 from .quantities import QUANTITIES, Undetermined
 from .scene import Scene, parameter_of, with_unit
@@ -52,13 +52,6 @@ DOUBTFUL = {
 """The decisions that may differ at an end of an input, and their attributes of `Decisions`."""
 
 
-class Value(NamedTuple):
-    """The value of a quantity, or why it has none."""
-
-    number: Decimal | None
-    reason: str = ""
-
-
 class End(NamedTuple):
     """The scene with an input at an end of its range: the input, and the answers, or why there are none."""
 
@@ -66,25 +59,25 @@ class End(NamedTuple):
     answers: Answers | None
     reason: str = ""
 
-    def value(self, name: str) -> Value:
+    def answer(self, name: str) -> Answer:
         """Return the value of a quantity; one too small to be written out is 0."""
         if self.answers is None:
-            return Value(None, self.reason)
+            return Answer(None, self.reason)
         try:
-            return Value(Decimal(self.answers.settle(attrgetter(name))))
+            return Answer(Decimal(self.answers.settle(attrgetter(name))))
         except Undetermined as undetermined:
-            return Value(None, str(undetermined))
+            return Answer(None, str(undetermined))
         except ZeroDivisionError:
-            return Value(None, "unknown")
+            return Answer(None, "unknown")
         except OverflowError:  # of a denominator
-            return Value(ZERO)
+            return Answer(ZERO)
 
 
 class Spread(NamedTuple):
     """A quantity in the scene and at both ends of each input, the steps that are not 0, and the variance."""
 
     here: Decimal
-    ends: Mapping[str, Sequence[Value]]
+    ends: Mapping[str, Sequence[Answer]]
     steps: Mapping[str, Decimal]
     variance: Decimal
 
@@ -138,14 +131,14 @@ class UncertainAnswers(Answers):
         """Compute a quantity at all ends, once; None if it has no finite value in the scene."""
         if name in self._spreads:
             return self._spreads[name]
-        here = End(Fraction(0), self.rounded_to(DIGITS)).value(name).number
+        here = End(Fraction(0), self.rounded_to(DIGITS)).answer(name).value
         if here is None or is_infinite(here):
             return None
-        ends = {x: [end.value(name) for end in pair] for x, pair in self._ends_at(1).items()}
+        ends = {x: [end.answer(name) for end in pair] for x, pair in self._ends_at(1).items()}
         steps = {}
         with localcontext(CONTEXT):
-            for x, values in ends.items():
-                numbers = [here, *(value.number for value in values if value.number is not None)]
+            for x, pair in ends.items():
+                numbers = [here, *(answer.value for answer in pair if answer.value is not None)]
                 step = half_range(numbers)
                 if 2 * step > NEGLIGIBLE * max(map(abs, numbers)) or is_infinite(step):
                     steps[x] = step
@@ -161,7 +154,7 @@ class UncertainAnswers(Answers):
         value, reason = self.answer(name)
         has_none = value is None or reason == TOO_SMALL or name == "regime"
         spread = None if has_none else self._spread(name)
-        if spread is None or any(value.number is None for pair in spread.ends.values() for value in pair):
+        if spread is None or any(answer.value is None for pair in spread.ends.values() for answer in pair):
             return None
         digits = digits or self.digits
         u = to_digits(min(digits or RIGHT_DIGITS, RIGHT_DIGITS))(CONTEXT.sqrt(spread.variance))
@@ -209,13 +202,12 @@ class UncertainAnswers(Answers):
             spread = self._spread(name)
             if spread is None:
                 continue
-            for x, values in spread.ends.items():
-                missing = [i for i in (0, 1) if values[i].number is None]
-                if missing:
-                    place, why = self._at(x, self._ends_at(1)[x][missing[0]]), values[missing[0]].reason
+            for x, pair in spread.ends.items():
+                if missing := [i for i in (0, 1) if pair[i].value is None]:
+                    i = missing[0]
+                    place, why = self._at(x, self._ends_at(1)[x][i]), pair[i].reason
                     reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
-                    other = values[1 - missing[0]].number
-                    groups.setdefault(reason, []).append(_one_sided(name, spread.here, other))
+                    groups.setdefault(reason, []).append(_one_sided(name, spread.here, pair[1 - i].value))
         sentences = []
         for reason, group in groups.items():
             others = len(group) - MOST_NAMED
