@@ -34,7 +34,7 @@ CHANGES = [
     ("take a unit", "examples/hoist.md", "kg, g, mg, ug", "stater, "),
     ("add a quantity", "solver/quantities.py", "    # Of a scene whose motion was",
      '    "trial": About("limits", "Q", "kg", "", "both masses"),\n'),
-    ("add a quantity", "solver/machine.py", "    @property\n    def gravity(",
+    ("add a quantity", "solver/machine.py", "    @property\n    def moment_of_inertia(",
      "    @property\n    def trial(self) -> N:\n        return self.ar.number(self.decided.light) + self.decided.heavy\n\n"),
     ("add a quantity", "api.py", "    pulley_mass: T |", "    trial: T | None\n"),
     ("take a unit", "reading/units.py", '"kg": "1", ', '"stater": "7", '),

@@ -14,7 +14,7 @@ from ..numbers.text import Message, Option, counted, joined
 from ..reading.names import read_names
 from ..solver import physics
 from ..solver.decisions import Decisions
-from ..solver.scene import Input, Motion, Scene, SceneError, parameter_of
+from ..solver.scene import Input, Scene, SceneError, parameter_of
 from .estimate import (
     TINY,
     Data,
@@ -103,8 +103,7 @@ def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
         if typed.given is not None and not in_range(typed):
             raise SceneError(x, typed.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
-    motion = Motion(drop=inputs["drop"].value if "drop" in inputs else None)
-    return Conditions(inputs, Scene.of({**inputs, **masses})._replace(motion=motion))
+    return Conditions(inputs, Scene.of({**inputs, **masses}))
 
 
 def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:

@@ -5,9 +5,7 @@ In slip the pulley's mass does not enter the motion, so that a gives the kinetic
 """
 
 from collections.abc import Mapping
-from fractions import Fraction
 from math import inf
-from types import SimpleNamespace
 from typing import Any
 
 from ..numbers.digits import (
@@ -22,22 +20,7 @@ from ..numbers.rational import EXACT
 from . import physics
 from .decisions import ZERO, Decisions
 from .quantities import Undetermined
-from .scene import (
-    FALL,
-    INPUTS,
-    MASSES,
-    MEASURED,
-    Input,
-    Motion,
-    Scene,
-    SceneError,
-    checked,
-    own_values,
-    parameter_of,
-)
-
-Values = Any
-"""The exact values of inputs as attributes; one is None if it is not given, or is to be found."""
+from .scene import FALL, INPUTS, MASSES, MEASURED, Input, Scene, SceneError, parameter_of
 
 MOTOR = "for a motor or a brake see examples/hoist.md"
 IF_IT_SLOWS_DOWN = "for masses that slow down give a and --find axle"
@@ -59,23 +42,21 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
         raise SceneError(excess[0], inputs[excess[0]].given, rule)
     name = "a" if "a" in given else fall[-1]
     finds = _unknown(inputs, find, name) if is_measured else None
-    values = SimpleNamespace(**checked(inputs, finds or ""))
-    measured, terms = own_values(inputs, MEASURED)
-    values.terms += (*terms.items(),)
-    values.motion = Motion(**measured, finds=finds, direction=_direction(values, measured["a"], finds))
-    one_falls = finds in MASSES and "a" not in given and 0 not in (values.m1, values.m2)
-    if below_0 := [x for x in fall if measured[x] < 0 and not one_falls]:
+    scene = Scene.of(inputs, finds)
+    scene = scene._replace(motion=scene.motion._replace(direction=_direction(scene)))
+    one_falls = finds in MASSES and "a" not in given and 0 not in (scene.m1, scene.m2)
+    if below_0 := [x for x in fall if getattr(scene.motion, x) < 0 and not one_falls]:
         raise SceneError(below_0[0], inputs[below_0[0]].given, NOT_BELOW_0)
-    if not finds:
-        return Scene(**vars(values))
-    if by_g := [(x, terms.words) for x, (_, terms) in values.terms if finds == terms.by]:
+    if by_g := [(x, terms.words) for x, (_, terms) in scene.terms if finds == terms.by]:
         x, words = by_g[0]
         rule = f"is {words}, and g is to be found; give g, or {x} in {parameter_of(x).unit}"
         raise SceneError(x, inputs[x].given, rule)
-    rule = _contradiction(values, inputs["g"].given is not None)
+    if not finds:
+        return scene
+    rule = _contradiction(scene, inputs["g"].given is not None)
     if not rule:
         try:
-            scene = Scene(**{**vars(values), **found_inputs(values)})
+            scene = scene._replace(**found_inputs(scene))
             rule = _impossible(scene)
         except Undetermined as undetermined:
             rule = str(undetermined)
@@ -100,50 +81,49 @@ def _unknown(inputs: Mapping[str, Input], find: str | None, name: str) -> str:
     return "mu_k" if slides else "g" if has_pulley else "M"
 
 
-def _direction(values: Values, a: Fraction | None, finds: str | None) -> int:
+def _direction(scene: Scene) -> int:
     """Return the direction of a motion that the masses do not tell, as `Motion` has it."""
+    finds, a = scene.motion.finds, scene.motion.a
     if finds in MASSES:
-        return -1 if values.m2 == 0 else 1  # only m1 can fall beside an end fixed to the pulley
+        return -1 if scene.m2 == 0 else 1  # only m1 can fall beside an end fixed to the pulley
     if finds != "axle":
         return 0
-    sign = (values.m2 > values.m1) - (values.m2 < values.m1)
+    sign = (scene.m2 > scene.m1) - (scene.m2 < scene.m1)
     return sign or ((a < 0) - (a > 0) if a else 0)  # equal masses move only if they slow down
 
 
-def _contradiction(values: Values, g_given: bool) -> str:
+def _contradiction(scene: Scene, g_given: bool) -> str:
     """Return why what was measured contradicts the other inputs, "" if it does not."""
-    motion, M, I, mu = values.motion, values.M, values.I, values.mu
-    decided, finds = Decisions(values), motion.finds
-    if mu is not None and finds != "mu_k":
-        return f"finds {finds} by assuming that the string does not slip; leave mu out"
-    if finds in MASSES:
-        if M == inf or (motion.a == 0 and decided.has_axle_friction):
+    decided, finds = Decisions(scene), scene.motion.finds
+    M, I, mu, has_axle_friction = scene.M, scene.I, scene.mu, decided.has_axle_friction
+    match finds:
+        case "M" | "g" | "m1" | "m2" | "axle" if mu is not None:
+            return f"finds {finds} by assuming that the string does not slip; leave mu out"
+        case "m1" | "m2" if M == inf or (scene.motion.a == 0 and has_axle_friction):
             return f"says nothing about {finds} on a pulley at rest; give {finds}"
-        if 0 in (values.m1, values.m2) and not decided.rim_mass and not decided.has_axle_friction:
+        case "m1" | "m2" if 0 in (scene.m1, scene.m2) and not (decided.rim_mass or has_axle_friction):
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
-        return ""
-    if finds == "axle" and M == inf:
-        return "says nothing about the axle of a locked pulley; leave M out"
-    if finds == "mu_k" and M != inf and (mu is None or M is I is None):
-        return "finds mu_k only if the string slips: give M = inf, or M and mu"
-    if finds == "M" and I is not None:
-        return "finds no M beside I, which is the pulley's inertia; leave I out"
-    if finds == "g" and g_given:
-        pulley = "I" if M is None else "M"
-        return (
-            f"leaves nothing to find if both {pulley} and g are given; leave one of them out,"
-            " or ask for the axle's friction: --find axle"
-        )
-    if decided.sign == 0:
-        return f"says nothing about equal masses, which rest on any pulley; {IF_IT_SLOWS_DOWN}"
-    if finds == "axle":
-        return ""
-    if finds == "mu_k" and not decided.light:
-        return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
-    if values.mu_k is not None:
-        return "and mu_k both say how the string slides; leave one of them out"
-    if mu is not None and not decided.slips:
-        return f"needs a string that slips; with mu = {as_typed(mu)} it does not: leave mu out, or {MOTOR}"
+        case "axle" if M == inf:
+            return "says nothing about the axle of a locked pulley; leave M out"
+        case "mu_k" if M != inf and (mu is None or M is I is None):
+            return "finds mu_k only if the string slips: give M = inf, or M and mu"
+        case "M" if I is not None:
+            return "finds no M beside I, which is the pulley's inertia; leave I out"
+        case "g" if g_given:
+            pulley = "I" if M is None else "M"
+            return (
+                f"leaves nothing to find if both {pulley} and g are given; leave one of them out,"
+                " or ask for the axle's friction: --find axle"
+            )
+        case "M" | "g" | "mu_k" | "axle" if decided.sign == 0:
+            return f"says nothing about equal masses, which rest on any pulley; {IF_IT_SLOWS_DOWN}"
+        case "mu_k" if not decided.light:
+            return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
+        case "mu_k" if scene.mu_k is not None:
+            return "and mu_k both say how the string slides; leave one of them out"
+        case "mu_k" if mu is not None and not decided.slips:
+            without = f"leave mu out, or {MOTOR}"
+            return f"needs a string that slips; with mu = {as_typed(mu)} it does not: {without}"
     return ""
 
 
@@ -167,18 +147,17 @@ def _impossible(scene: Scene) -> str:
     return ""
 
 
-def found_inputs(values: Values) -> dict[str, Any]:
+def found_inputs(scene: Scene) -> dict[str, Any]:
     """Return the input that follows from a motion, by its name; it may be below 0. Raises Undetermined.
 
     Kinetic friction is no rational number: the machine computes it.
     """
-    m1, m2, g, motion = values.m1, values.m2, values.g, values.motion
-    finds = motion.finds
+    m1, m2, g, finds = scene.m1, scene.m2, scene.g, scene.motion.finds
     if finds is None:
         return {}
-    decided: Any = Decisions(values)  # about the pulley, as a mass may be missing
+    decided: Any = Decisions(scene)  # about the pulley, as a mass may be missing
     c, f, b = decided.rim_mass, decided.axle_friction, decided.axle_mass
-    a = motion.acceleration({"m2": 1, "m1": -1}.get(finds) or decided.sign)
+    a = scene.motion.acceleration({"m2": 1, "m1": -1}.get(finds) or decided.sign)
     if finds != "g" and (a >= g or (finds == "axle" and -a >= g)):
         raise Undetermined(f"must be slower than free fall, {as_typed(g)} m/s²")
     if finds in MASSES:
@@ -188,12 +167,10 @@ def found_inputs(values: Values) -> dict[str, Any]:
         return {finds: physics.lighter_mass(known, c, -a, g, f)}
     l, h = decided.light, decided.heavy
     if finds == "axle":
-        return {"axle": physics.axle_friction(l, h, c, a, g)}
+        return {finds: physics.axle_friction(l, h, c, a, g)}
     if a <= 0:
         heavier, side = ("m2", "above") if m2 > m1 else ("m1", "below")
         raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass; {IF_IT_SLOWS_DOWN}")
     if finds == "M":
-        return {"M": physics.rim_mass(l, h, a, g, b) / values.inertia}
-    if finds == "g":
-        return {"g": physics.gravity(l, h, c, a, f)}
-    return {}
+        return {finds: physics.rim_mass(l, h, a, g, b) / decided.beta}
+    return {finds: physics.gravity(l, h, c, a, f)} if finds == "g" else {}

@@ -4,16 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import TYPE_CHECKING, Generic
+from typing import TYPE_CHECKING, Any, Generic
 
 from ..numbers.lazy import lazy
 from ..numbers.rational import N
 from . import arc, physics, quantities
 from .decisions import Decisions, is_zero
 from .quantities import Undetermined
+from .scene import MASSES
 
 if TYPE_CHECKING:
     from ..numbers.rational import Arithmetic
+
+
+def _found(name: str, otherwise: str) -> Any:
+    """Return the quantity that is an input, if the measured motion finds it."""
+
+    def quantity(machine: Machine[N]) -> N:
+        if machine.decided.motion.finds != name:
+            raise Undetermined(otherwise)
+        return machine.ar.number(getattr(machine.scene, name))
+
+    return property(quantity)
 
 
 class Machine(Generic[N]):
@@ -64,10 +76,6 @@ class Machine(Generic[N]):
         """Coefficient of static friction; not given if one mass is 0."""
         reason = quantities.FIXED_END if self.decided.one_mass_is_0 else quantities.NEEDS_MU
         return self._given(self.scene.mu, reason)
-
-    def _require_mu(self) -> None:
-        """Raise Undetermined if mu is not given."""
-        _ = self.mu
 
     def _capstan_ratio_minus_1(self, given: Fraction | None, mu: N) -> N:
         """Return e^{μφ} - 1, exactly 0 without friction."""
@@ -153,8 +161,7 @@ class Machine(Generic[N]):
     @lazy
     def limiting_arc(self) -> N:
         """The arc (rad) over which friction at its limit makes up the ratio of the tensions."""
-        mu = self.mu
-        return physics.verge_coefficient(self.log_ratio, mu)
+        return physics.verge_coefficient(self.log_ratio, self.mu)
 
     def arcs(self, kind: arc.Profile) -> list[arc.Arc[N]]:
         """Return the arc of contact from the light end, in limiting and stuck pieces (see `arc`)."""
@@ -205,10 +212,8 @@ class Machine(Generic[N]):
         if decided.tensions_equal:
             return self.ar.number(0)
         if decided.pulley_at_rest:
-            rest = self.ar.number(0)
-            return self.ar.known_not_negative(
-                physics.difference_of_moving_masses(self.l, self.h, rest, self.g)
-            )
+            difference = physics.difference_of_moving_masses(self.l, self.h, self.ar.number(0), self.g)
+            return self.ar.known_not_negative(difference)
         c = self._given(decided.rim_mass, quantities.NEEDS_M)
         return physics.difference_of_a_pulley(c, self.magnitude, self.f)
 
@@ -236,7 +241,7 @@ class Machine(Generic[N]):
             raise Undetermined(quantities.DEFINITE)
         if not self._tensions_differ():
             return False
-        self._require_mu()
+        _ = self.mu  # raises if it is not given
         if self.decided.long_wrap:
             raise Undetermined(quantities.LONG_WRAP)
         return True
@@ -376,14 +381,11 @@ class Machine(Generic[N]):
 
     @lazy
     def critical_pulley_mass(self) -> N:
-        self._require_mu()
-        if not self.decided.can_slip:
-            raise Undetermined(
-                quantities.AXLE_HOLDS if self.decided.axle_holds else quantities.NO_CRITICAL_MASS
-            )
-        if self.decided.always_slips:
+        friction_mass, decided = self.friction_mass, self.decided
+        if not decided.can_slip:
+            raise Undetermined(quantities.AXLE_HOLDS if decided.axle_holds else quantities.NO_CRITICAL_MASS)
+        if decided.always_slips:
             raise Undetermined(quantities.ALWAYS_SLIPS)
-        friction_mass = self.friction_mass
         beta = self._given(self.decided.beta, quantities.UNKNOWN_SHAPE)
         return physics.critical_pulley_mass(self.l, self.h, friction_mass, self.drive, beta, self.b)
 
@@ -422,7 +424,7 @@ class Machine(Generic[N]):
 
     @lazy
     def least_wrap(self) -> N:
-        self._require_mu()
+        _ = self.mu  # raises if it is not given
         if not self._tensions_differ():
             return self.ar.number(0)
         no_friction = is_zero(self.scene.mu)
@@ -432,15 +434,10 @@ class Machine(Generic[N]):
             raise Undetermined(quantities.NO_WRAP)
         return self.limiting_arc * 180 / self.ar.pi
 
-    def _found(self, name: str, otherwise: str) -> N:
-        """Return the input that follows from the measured acceleration, if it is this one."""
-        if self.decided.motion.finds != name:
-            raise Undetermined(otherwise)
-        return self.ar.number(getattr(self.scene, name))
-
-    @property
-    def pulley_mass(self) -> N:
-        return self._found("M", quantities.NEEDS_A)
+    pulley_mass = _found("M", quantities.NEEDS_A)
+    gravity = _found("g", quantities.NEEDS_A_BESIDE_M)
+    m1, m2 = (_found(mass, quantities.NEEDS_A_AND_M.format(mass)) for mass in MASSES)
+    axle = _found("axle", quantities.NEEDS_FIND_AXLE)
 
     @property
     def moment_of_inertia(self) -> N:
@@ -449,24 +446,9 @@ class Machine(Generic[N]):
         return physics.moment_of_inertia(self._given(self.decided.rim_mass, quantities.NEEDS_M), R)
 
     @property
-    def gravity(self) -> N:
-        return self._found("g", quantities.NEEDS_A_BESIDE_M)
-
-    @property
-    def m1(self) -> N:
-        return self._found("m1", quantities.NEEDS_A_AND_M.format("m1"))
-
-    @property
-    def m2(self) -> N:
-        return self._found("m2", quantities.NEEDS_A_AND_M.format("m2"))
-
-    @property
-    def axle(self) -> N:
-        return self._found("axle", quantities.NEEDS_FIND_AXLE)
-
-    @property
     def axle_torque(self) -> N:
-        return self.axle * self._given(self.scene.R, quantities.NEEDS_R)
+        torque: N = self.axle * self._given(self.scene.R, quantities.NEEDS_R)
+        return torque
 
     @property
     def drop(self) -> N:
@@ -474,7 +456,7 @@ class Machine(Generic[N]):
         if drop is not None:
             return drop
         if speed is not None:
-            return physics.height_by_speed(a, speed)
+            return physics.by_speed(speed, a)
         assert time is not None
         return physics.height_in_time(a, time)
 

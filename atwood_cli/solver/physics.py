@@ -158,13 +158,13 @@ def acceleration_of_fall(drop: N, time: N) -> N:
     return 2 * drop / (time * time)
 
 
-def acceleration_by_speed(drop: N, speed: N) -> N:
-    """Return the constant acceleration (m/s²) from rest to ``speed`` (m/s) over the height ``drop`` (m).
+def by_speed(speed: N, other: N) -> N:
+    """Return the acceleration (m/s²) of a fall from rest to ``speed`` (m/s), or its height (m), by the other.
 
-    >>> acceleration_by_speed(9, 6)
-    2.0
+    >>> by_speed(6, 9), by_speed(6, 2)
+    (2.0, 9.0)
     """
-    return speed * speed / (2 * drop)
+    return speed * speed / (2 * other)
 
 
 def height_in_time(a: N, time: N) -> N:
@@ -174,15 +174,6 @@ def height_in_time(a: N, time: N) -> N:
     9.0
     """
     return a * time * time / 2
-
-
-def height_by_speed(a: N, speed: N) -> N:
-    """Return the height (m) of a fall from rest to ``speed`` (m/s) with the acceleration ``a`` (m/s²).
-
-    >>> height_by_speed(2, 6)
-    9.0
-    """
-    return speed * speed / (2 * a)
 
 
 def fall_time(drop: N, a: N, sqrt: Function[N]) -> N:

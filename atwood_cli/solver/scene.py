@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
@@ -274,7 +274,7 @@ class Motion(NamedTuple):
         if drop is None:
             a = speed / time
         elif time is None:
-            a = physics.acceleration_by_speed(drop, speed)
+            a = physics.by_speed(speed, drop)
         else:
             a = physics.acceleration_of_fall(drop, time)
         return sign * self.direction * a if self.finds in MASSES else a
@@ -305,9 +305,49 @@ class Scene(NamedTuple):
     terms: tuple[tuple[str, InTerms], ...] = ()
 
     @classmethod
-    def of(cls, inputs: Mapping[str, Input]) -> Scene:
-        """Make a scene of inputs that were read one by one. Raises SceneError if they contradict another."""
-        return cls(**checked(inputs))
+    def of(cls, inputs: Mapping[str, Input], finds: str | None = None) -> Scene:
+        """Make a scene of inputs and measurements that were read one by one; a motion may find a mass.
+
+        Raises SceneError if they contradict another.
+        """
+
+        def refuse(name: str, rule: str) -> NoReturn:
+            raise SceneError(name, inputs[name].given, rule)
+
+        values = {name: read.value for name, read in inputs.items()}
+        terms = {name: value for name, value in values.items() if isinstance(value, InTerms)}
+        for name, given in terms.items():
+            by = values[given.terms.by]
+            if by is None:
+                refuse(name, f"is {given.terms.words}, which needs {BY_IN_WORDS[given.terms.by]} as well")
+            values[name] = given.terms.own(given.number, by)
+        motion = Motion(**{x: values.pop(x) for x in MEASURED if x in values}, finds=finds)
+        m1, m2, M, mu, mu_k, inertia, I = (values[x] for x in ("m1", "m2", "M", "mu", "mu_k", "inertia", "I"))
+        for mass in MASSES:
+            if values[mass] is None and mass != finds:
+                fixed = "" if M is I is None else f"; {mass} = 0 is an end fixed to the pulley"
+                refuse(mass, f"{MISSING_MASS}{fixed}")
+        if I is not None and inertia is not None:
+            refuse("I", "and inertia both describe the pulley; give one of them")
+        if I is None and inertia is None:
+            values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
+        if m1 == m2 == 0:
+            raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
+        if mu is not None and 0 in (m1, m2):
+            rule = "is an end of the string that is fixed to the pulley, where mu has no effect; leave mu out"
+            refuse("m1" if m1 == 0 else "m2", rule)
+        if mu_k is not None and mu is None:
+            refuse("mu_k", "needs mu, the coefficient that decides whether it slips")
+        if mu_k is not None and mu_k > mu:
+            alike = to_double(mu_k) == to_double(mu)  # then a float's digits are the point
+            both = [Fraction(x) if alike else x for x in (mu_k, mu)]
+            sizes = " > ".join(shortened(as_typed(x, inf)) for x in both)
+            refuse("mu_k", f"must not be above mu: {sizes}")
+        if I is not None and values["R"] is None:
+            refuse("I", "needs the radius R as well")
+        if I is not None and M is not None and not 0 < M < inf:
+            refuse("I", f"contradicts M = {shortened(str(inputs['M'].given))}; leave one of them out")
+        return cls(**values, motion=motion, terms=(*terms.items(),))
 
     def given_as(self, x: str) -> Any:
         """Return an input, or what was measured, as it was given."""
@@ -328,77 +368,16 @@ class Scene(NamedTuple):
 
         What was given in other terms is converted anew, as that number may convert it.
         """
-        given, scene = self.given_as(x), self
+        given, terms = self.given_as(x), dict(self.terms)
         value: Any = given._replace(number=number) if isinstance(given, Angle | InTerms) else number
-        if isinstance(value, InTerms):
-            scene = scene._replace(terms=(*(dict(scene.terms) | {x: value}).items(),))
-        elif x in INPUTS:
-            scene = scene._replace(**{x: value})
-        else:
-            scene = scene._replace(motion=scene.motion._replace(**{x: value}))
-        return scene._converted() if scene.terms else scene
+        terms |= {x: value} if x in terms else {}
+        scene = self._with(x, value)._replace(terms=(*terms.items(),))
+        for name, given in terms.items():
+            scene = scene._with(name, given.terms.own(given.number, getattr(scene, given.terms.by)))
+        return scene
 
-    def _converted(self) -> Scene:
-        own = {x: given.terms.own(given.number, getattr(self, given.terms.by)) for x, given in self.terms}
-        motion = self.motion._replace(**{x: value for x, value in own.items() if x in MEASURED})
-        return self._replace(**{x: value for x, value in own.items() if x in INPUTS}, motion=motion)
-
-
-def own_values(
-    inputs: Mapping[str, Input], names: Iterable[str]
-) -> tuple[dict[str, Any], dict[str, InTerms]]:
-    """Return the values of inputs in their own terms, and those that were given in other terms.
-
-    Raises SceneError if the input is missing that converts one.
-    """
-    values = {name: inputs[name].value for name in names}
-    terms = {name: value for name, value in values.items() if isinstance(value, InTerms)}
-    for name, given in terms.items():
-        by = inputs[given.terms.by].value
-        if by is None:
-            needs = f"is {given.terms.words}, which needs {BY_IN_WORDS[given.terms.by]} as well"
-            raise SceneError(name, inputs[name].given, needs)
-        values[name] = given.terms.own(given.number, by)
-    return values, terms
-
-
-def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
-    """Return the values of inputs that do not contradict each other. Raises SceneError.
-
-    ``unknown`` is a mass that is to be found.
-    """
-
-    def refuse(name: str, rule: str) -> NoReturn:
-        raise SceneError(name, inputs[name].given, rule)
-
-    values, terms = own_values(inputs, INPUTS)
-    m1, m2, M, mu, mu_k, _, inertia, I, R, *_ = values.values()
-    for mass in MASSES:
-        if values[mass] is None and mass != unknown:
-            refuse(
-                mass,
-                MISSING_MASS
-                if M is I is None
-                else f"{MISSING_MASS}; {mass} = 0 is an end fixed to the pulley",
-            )
-    if I is not None and inertia is not None:
-        refuse("I", "and inertia both describe the pulley; give one of them")
-    if I is None and inertia is None:
-        values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
-    if m1 == m2 == 0:
-        raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
-    if mu is not None and 0 in (m1, m2):
-        fixed = "is an end of the string that is fixed to the pulley, where mu has no effect; leave mu out"
-        refuse("m1" if m1 == 0 else "m2", fixed)
-    if mu_k is not None and mu is None:
-        refuse("mu_k", "needs mu, the coefficient that decides whether it slips")
-    if mu_k is not None and mu_k > mu:
-        alike = to_double(mu_k) == to_double(mu)  # then a float's digits are the point
-        both = [Fraction(x) if alike else x for x in (mu_k, mu)]
-        sizes = " > ".join(shortened(as_typed(x, inf)) for x in both)
-        refuse("mu_k", f"must not be above mu: {sizes}")
-    if I is not None and R is None:
-        refuse("I", "needs the radius R as well")
-    if I is not None and M is not None and not 0 < M < inf:
-        refuse("I", f"contradicts M = {shortened(str(inputs['M'].given))}; leave one of them out")
-    return {**values, "terms": (*terms.items(),)}
+    def _with(self, x: str, value: Any) -> Scene:
+        """Return the scene with another value of an input, or of what was measured, in its own terms."""
+        if x in INPUTS:
+            return self._replace(**{x: value})
+        return self._replace(motion=self.motion._replace(**{x: value}))
