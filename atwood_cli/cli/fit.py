@@ -85,7 +85,7 @@ def fit(
     *,
     find: Find = None,
     without: Without = None,
-    drop: Annotated[str | None, scene_option("drop", "Measured", ", of all runs")] = None,
+    drop: Annotated[str | None, scene_option("drop", ", of all runs")] = None,
     m1: Annotated[str | None, scene_option("m1", remark=", of all runs")] = None,
     m2: Annotated[str | None, scene_option("m2", remark=", of all runs")] = None,
     hanger: Annotated[

@@ -14,7 +14,7 @@ import typer
 from ..output.files import STDOUT, check_free
 from ..output.text import FORMS, Destination, Picture
 from ..solver.quantities import NAMES, QUANTITIES
-from ..solver.scene import INPUTS, SceneError, parameter_of
+from ..solver.scene import INPUTS, MEASURED, SceneError, parameter_of
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """The environment variable by which a shell asks for completions of a word."""
@@ -56,7 +56,7 @@ def option(group: str, *flags: str, words: Callable[[], Mapping[str, str]] | Non
     return typer.Option(*flags, rich_help_panel=group, show_default=False, autocompletion=completion, **more)
 
 
-def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> Any:
+def scene_option(name: str, remark: str | None = None) -> Any:
     """Return the option for an input of a scene or a motion, with a remark that a command may replace."""
     parameter = parameter_of(name)
     flags = [flag(name), *ALIASES.get(name, [])]
@@ -67,6 +67,7 @@ def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> 
     words = dict(parameter.names)
     if parameter.may_be_infinite:
         words["inf"] = "a locked pulley"
+    group = "Scene" if name in INPUTS else "Measured"
     return option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)
 
 
@@ -83,15 +84,17 @@ NEEDS = {"bare": "figure", "symbols": "figure", "force": "output figure"}
 """By option, the others of which it needs one, if the command has them."""
 
 
-SCENE = {name: Annotated[str | None, scene_option(name)] for name in INPUTS}
-"""The options of a scene, by name."""
+SCENE, MOTION = (
+    {name: Annotated[str | None, scene_option(name)] for name in names} for names in (INPUTS, MEASURED)
+)
+"""The options of a scene, and of what is measured of its motion, by name."""
 
 
 def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
     """Give a command groups of options by name, which typer sees one by one.
 
-    The command gets those of SCENE as ``given``, those of `results` as ``target``, and those of FIGURE as
-    ``picture``.
+    The command gets those of SCENE and MOTION as ``given``, those of `results` as ``target``, and those of
+    FIGURE as ``picture``.
     """
 
     def taking(command: Command) -> Command:
@@ -103,7 +106,7 @@ def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
             _check(options)
             arguments = {parameter.name: options[parameter.name] for parameter in own}
             if "given" in taken:
-                arguments["given"] = {name: options[name] for name in INPUTS}
+                arguments["given"] = {name: options[name] for name in SCENE | MOTION if name in options}
             if "target" in taken:
                 arguments["target"] = _read_target(options)
             if FIGURE in groups:

@@ -16,13 +16,13 @@ from .options import (
     COULD_NOT,
     DONE,
     FIGURE,
+    MOTION,
     OUTPUT,
     SCENE,
     Digits,
     Expect,
     option,
     quantity_meanings,
-    scene_option,
     with_options,
 )
 
@@ -57,16 +57,12 @@ Any number may carry its uncertainty. For hoists see examples/hoist.md.
 """
 
 
-@with_options(SCENE, OUTPUT, FIGURE)
+@with_options(SCENE | MOTION, OUTPUT, FIGURE)
 def solve(
     given: Mapping[str, str | None],
     target: Destination,
     picture: Picture | None,
     *,
-    a: Annotated[str | None, scene_option("a", "Measured")] = None,
-    drop: Annotated[str | None, scene_option("drop", "Measured")] = None,
-    time: Annotated[str | None, scene_option("time", "Measured")] = None,
-    speed: Annotated[str | None, scene_option("speed", "Measured")] = None,
     find: Find = None,
     only: Only = None,
     expect: Expect = None,
@@ -83,8 +79,7 @@ def solve(
 ) -> int:
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     conditions = [read_condition(typed) for typed in expect or []]
-    measured = {"a": a, "drop": drop, "time": time, "speed": speed, "find": find}
-    answers = read_answers({**given, **measured}, read_digits(digits))
+    answers = read_answers({**given, "find": find}, read_digits(digits))
     if budget and not answers.uncertain:
         raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
     if explain and answers.uncertain:
