@@ -13,7 +13,7 @@ from atwood_cli import SceneError, Solution, solve
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES
-from atwood_cli.solver.scene import UNMEASURED
+from atwood_cli.solver.scene import Motion
 
 from .tools.doors import solve_any
 from .tools.scenes import inputs
@@ -40,7 +40,7 @@ def test_what_is_found_gives_the_measured_acceleration_exactly(
     assert exact.acceleration == Answers(read_scene(known), 30).round(a)
     for unknown in ("m1", "m2", "M", "g"):
         found: Any = solve(**{**known, unknown: None}, a=a, digits=30)
-        assert found.scene._replace(motion=UNMEASURED) == exact.scene
+        assert found.scene._replace(motion=Motion()) == exact.scene
         assert all(getattr(found, name) == getattr(exact, name) for name in NAMES)
     for unknown in ("m1", "m2") if M else ():
         known_masses = {**known, "M": None, "inertia": None, unknown: None}

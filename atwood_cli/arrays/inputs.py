@@ -191,8 +191,8 @@ def _heavier(given: Mapping[str, GivenColumn], terms: Mapping[str, Terms], size:
     order = 1 * (m2 > m1) - (m2 < m1)
     for row in np.flatnonzero(np.abs(m2 - m1) <= NEARLY_EQUAL * m1).tolist():  # a weight beside a mass
         exact = {name: _exact(name, given[name], row) for name in (*MASSES, "g")}
-        one, other = (terms[x].own(exact[x], exact["g"]) if x in terms else exact[x] for x in MASSES)
-        order[row] = (other > one) - (other < one)
+        mass_1, mass_2 = (terms[x].own(exact[x], exact["g"]) if x in terms else exact[x] for x in MASSES)
+        order[row] = (mass_2 > mass_1) - (mass_2 < mass_1)
     return order
 
 

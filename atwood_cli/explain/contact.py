@@ -118,12 +118,10 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
     def vector(of: Callable[[Any], tuple[Any, Any]]) -> dict[str, Rounded]:
         return {"x": answers.settle(lambda m: of(m)[0]), "y": answers.settle(lambda m: of(m)[1])}
 
-    def friction(m: Machine[Any]) -> tuple[Any, Any]:
-        return m.seen_from_m1(arc.force(m.arcs(kind), physics.friction_vector))
+    def along_the_arc(law: Callable[..., tuple[Any, Any]]) -> Callable[[Machine[Any]], tuple[Any, Any]]:
+        return lambda m: m.seen_from_m1(arc.force(m.arcs(kind), law))
 
-    def normal(m: Machine[Any]) -> tuple[Any, Any]:
-        return m.seen_from_m1(arc.force(m.arcs(kind), physics.normal_vector))
-
+    friction, normal = along_the_arc(physics.friction_vector), along_the_arc(physics.normal_vector)
     forces = {"friction": vector(friction), "normal": vector(normal)}
     ends = vector(lambda m: m.resultant_vector)
 

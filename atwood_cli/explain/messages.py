@@ -68,19 +68,16 @@ def verdict(answers: Answers) -> str:
     """Say what the string does, and why."""
     answers = answers.to_six_digits
     decided, scene = answers.decided, answers.decided.scene
-    if decided.slows_down:
-        most = format_number(_beside(answers, decided.difference)(decided.axle_mass))
-        stops = f"Slows down, and stops: axle friction can hold a difference of masses of up to {most} kg."
-        return f"{stops} {_grips(answers)}" if decided.light else stops
     if decided.sign == 0:
         return "At rest: the masses are equal, so no friction is needed."
     if decided.regime == "verge":
         return _on_the_verge(answers)
     if decided.regime == "slip":
         return _slips(answers)
-    if decided.axle_holds:
+    if decided.axle_holds or decided.slows_down:
+        does = "Slows down, and stops" if decided.slows_down else "At rest"
         most = format_number(_beside(answers, decided.difference)(decided.axle_mass))
-        held = f"At rest: axle friction can hold a difference of masses of up to {most} kg."
+        held = f"{does}: axle friction can hold a difference of masses of up to {most} kg."
         return f"{held} {_grips(answers)}" if decided.light else held
     if decided.tensions_equal:
         return "No slip: a massless pulley needs no friction to turn, so both tensions are equal."
@@ -206,11 +203,8 @@ def _on_terms(answers: Answers) -> list[str]:
     ]
     if motion.finds in MASSES and motion.a is None and 0 not in (scene.m1, scene.m2):
         name = "speed" if motion.drop is None else "drop"
-        falls, below = (
-            f"is taken to fall; if it rises, give a `{name}` below 0",
-            f"rises, as `{name}` is below 0",
-        )
-        sentences.append(f"`m2` {falls if getattr(motion, name) > 0 else below}.")
+        falls = f"is taken to fall; if it rises, give a `{name}` below 0"
+        sentences.append(f"`m2` {falls if getattr(motion, name) > 0 else f'rises, as `{name}` is below 0'}.")
     return sentences
 
 

@@ -149,8 +149,10 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
         return TypedNumber(inf)
     try:
         number = read_number(parameter.names.get(word, text), parameter.dimensions or None)
-        is_own = number.unit == GRAVITY and not parameter.terms  # g as a multiple of standard gravity
-        return number.times(Fraction(STANDARD_GRAVITY)) if is_own else number
+        if number.unit == GRAVITY and not parameter.terms:  # g as a multiple of standard gravity
+            value, _, u = number
+            return TypedNumber(value * Fraction(STANDARD_GRAVITY), "", u * Fraction(STANDARD_GRAVITY))
+        return number
     except NotANumber:
         rule = _not_a_number(parameter, in_ascii(text))
     except Malformed as error:

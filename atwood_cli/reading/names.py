@@ -49,13 +49,13 @@ def read_name(
         return word
     if (name := symbols.get(_plain(word), "")) in known:
         return name
-    there_are = "see atwood quantities" if kind == "quantity" else f"there are {', '.join(known)}"
+    known_names = "see atwood quantities" if kind == "quantity" else f"there are {', '.join(known)}"
     a_kind = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
     if word in INPUTS:
-        raise SceneError(parameter, word, f"is an input, not {a_kind}; {there_are}")
+        raise SceneError(parameter, word, f"is an input, not {a_kind}; {known_names}")
     small = _plain(word).lower()
     alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
-    hint = f"did you mean {alike[0]}?" if len(alike) == 1 else there_are
+    hint = f"did you mean {alike[0]}?" if len(alike) == 1 else known_names
     raise SceneError(parameter, word, f"is not {a_kind}{nearest(word, known) or f'; {hint}'}")
 
 

@@ -130,10 +130,6 @@ class TypedNumber(NamedTuple):
     unit: str = ""
     uncertainty: Fraction = Fraction(0)
 
-    def times(self, factor: Fraction) -> TypedNumber:
-        """Return the number times a factor, without a unit."""
-        return TypedNumber(self.value * factor, "", self.uncertainty * factor)
-
 
 def in_ascii(text: str) -> str:
     """Return a number without needless blanks and in the characters of ASCII: −1½ is -3/2."""
@@ -275,7 +271,7 @@ def limited(value: Fraction) -> Fraction:
 
 def read_unit(unit: str, wanted: str) -> Fraction:
     """Return the factor from a unit to the SI, or to degrees. Raises Malformed if there is no such unit."""
-    units = {symbol: factor for one in wanted.split(" or ") for symbol, factor in UNITS[one].items()}
+    units = {symbol: factor for name in wanted.split(" or ") for symbol, factor in UNITS[name].items()}
     if (symbol := symbol_of(unit)) not in units:
         raise Malformed(f"has the unit {in_quotes(unit)}; it takes {', '.join(units)}")
     return Fraction(units[symbol])

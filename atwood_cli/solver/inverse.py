@@ -44,8 +44,8 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
     finds = _unknown(inputs, find, name) if is_measured else None
     scene = Scene.of(inputs, finds)
     scene = scene._replace(motion=scene.motion._replace(direction=_direction(scene)))
-    one_falls = finds in MASSES and "a" not in given and 0 not in (scene.m1, scene.m2)
-    if below_0 := [x for x in fall if getattr(scene.motion, x) < 0 and not one_falls]:
+    m2_may_rise = finds in MASSES and "a" not in given and 0 not in (scene.m1, scene.m2)
+    if below_0 := [x for x in fall if getattr(scene.motion, x) < 0 and not m2_may_rise]:
         raise SceneError(below_0[0], inputs[below_0[0]].given, NOT_BELOW_0)
     if by_g := [(x, terms.words) for x, (_, terms) in scene.terms if finds == terms.by]:
         x, words = by_g[0]
@@ -130,11 +130,11 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
 def _impossible(scene: Scene) -> str:
     """Return why the scene that follows from a motion is none, "" if it is one."""
     decided = Decisions(scene)
-    motion, finds = decided.motion, str(decided.motion.finds)
+    finds = str(scene.motion.finds)
     if finds == "mu_k":
         if decided.slide_ratio_minus_1(EXACT) < 0:
             drive, load = (of(decided.light, decided.heavy, ZERO) for of in (physics.drive, physics.load))
-            apart = rounding_apart_from(decided.sign * motion.acceleration(decided.sign), SHOWN_DIGITS)
+            apart = rounding_apart_from(decided.sign * decided.measured_acceleration, SHOWN_DIGITS)
             most = apart(decided.sign * physics.acceleration(drive, load, scene.g))
             return f"is too large: without friction the acceleration is {format_number(most)} m/s²; {MOTOR}"
         if scene.mu is not None and decided.exceeds(decided.slide_ratio_minus_1, scene.mu):

@@ -119,8 +119,6 @@ FINDABLE = (*MASSES, "M", "g", "mu_k", "axle")
 FALL = ("drop", "time", "speed")
 """What is measured of a fall from rest; the acceleration follows from two."""
 DEFAULTS = {"g": STANDARD_GRAVITY, "wrap": "180"}
-BY_IN_WORDS = {"g": "g", "R": "the radius R"}
-"""What converts other terms, in words."""
 MISSING_MASS = "is missing; give both masses, m1 and m2"
 
 
@@ -280,9 +278,6 @@ class Motion(NamedTuple):
         return sign * self.direction * a if self.finds in MASSES else a
 
 
-UNMEASURED = Motion()
-
-
 class Scene(NamedTuple):
     """A valid scene in SI units, exact; an input that is not given is None.
 
@@ -301,7 +296,7 @@ class Scene(NamedTuple):
     R: Fraction | None
     wrap: Angle
     axle: Fraction | None = None
-    motion: Motion = UNMEASURED
+    motion: Motion = Motion()
     terms: tuple[tuple[str, InTerms], ...] = ()
 
     @classmethod
@@ -318,8 +313,8 @@ class Scene(NamedTuple):
         terms = {name: value for name, value in values.items() if isinstance(value, InTerms)}
         for name, given in terms.items():
             by = values[given.terms.by]
-            if by is None:
-                refuse(name, f"is {given.terms.words}, which needs {BY_IN_WORDS[given.terms.by]} as well")
+            if by is None:  # g has a default
+                refuse(name, f"is {given.terms.words}, which needs the radius R as well")
             values[name] = given.terms.own(given.number, by)
         motion = Motion(**{x: values.pop(x) for x in MEASURED if x in values}, finds=finds)
         m1, m2, M, mu, mu_k, inertia, I = (values[x] for x in ("m1", "m2", "M", "mu", "mu_k", "inertia", "I"))

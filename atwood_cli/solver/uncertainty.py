@@ -14,7 +14,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
-from operator import attrgetter
 from typing import Any, NamedTuple
 
 from ..numbers.digits import (
@@ -64,13 +63,10 @@ class End(NamedTuple):
         if self.answers is None:
             return Answer(None, self.reason)
         try:
-            return Answer(Decimal(self.answers.settle(attrgetter(name))))
-        except Undetermined as undetermined:
-            return Answer(None, str(undetermined))
+            answer = self.answers.answer(name)
         except ZeroDivisionError:
             return Answer(None, "unknown")
-        except OverflowError:  # of a denominator
-            return Answer(ZERO)
+        return Answer(ZERO) if answer.reason == TOO_SMALL else answer
 
 
 class Spread(NamedTuple):
@@ -161,7 +157,6 @@ class UncertainAnswers(Answers):
         return u if digits else to_double(u)
 
     def budget(self, name: str, round_: Rounding[Any] | None = None) -> dict[str, Any]:
-        """Return the percentage of each uncertain input in a variance, {} if there is none or it is 0."""
         spread = self._spread(name) if self.uncertainty(name) else None
         if spread is None or not spread.steps or is_infinite(spread.variance):
             return {}
@@ -192,7 +187,6 @@ class UncertainAnswers(Answers):
         return [*sentences.values()]
 
     def nearby(self) -> list[Answers | None]:
-        """Return the answers with each input one and two uncertainties off, None if that is no scene."""
         return [end.answers for _, _, end in self._nearby_ends]
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
