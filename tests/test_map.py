@@ -40,7 +40,7 @@ CHANGES = [
     ("take a unit", "reading/units.py", '"kg": "1", ', '"stater": "7", '),
     ("add an input", "solver/scene.py", '}\n"""The inputs of a scene, which columns',
      '    "brake": Parameter("friction of a brake", "f_brake", "brake", "N", may_be_zero=True, dimension="force"),\n'),
-    ("add an input", "solver/scene.py", "    motion: Motion = UNMEASURED\n    terms: ", "    brake: Fraction | None = None\n"),
+    ("add an input", "solver/scene.py", "    motion: Motion = Motion()\n    terms: ", "    brake: Fraction | None = None\n"),
     ("add an input", "solver/decisions.py", "        return ZERO if self.scene.axle is None else self.scene.axle\n",
      "        if self.scene.brake is not None:\n            return self.scene.brake + (self.scene.axle or ZERO)\n"),
     ("add an input", "api.py", "    a: Given | None\n", "    brake: Given | None\n"),
