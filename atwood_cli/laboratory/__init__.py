@@ -81,7 +81,7 @@ def fit(
     try:
         return results_of(fit_of(runs, given, names, without=left_out, sheet=sheet), in_python=True)
     except CannotSeparate as error:
-        raise ArithmeticError(sentence(error.args, in_python=True)) from None
+        raise ArithmeticError(sentence("".join(error.args), in_python=True)) from None
     except Unreadable as error:
         if isinstance(runs, str | PathLike):
             raise cannot_read(fspath(runs), Unreadable(str(error))) from None

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import fdtrc
 
 from ..numbers.digits import format_number, half_range
-from ..numbers.text import Message, Option, counted, joined
+from ..numbers.text import counted
 from ..reading.names import read_names
 from ..solver import physics
 from ..solver.decisions import Decisions
@@ -90,8 +90,8 @@ class Fitted(NamedTuple):
     values: Mapping[str, float]
     line: Line
     results: Mapping[str, Result] = {}
-    outliers: Sequence[tuple[int, Message]] = ()
-    causes: Sequence[Message] = ()
+    outliers: Sequence[tuple[int, str]] = ()
+    causes: Sequence[str] = ()
 
 
 # What is given, and what is to be fitted
@@ -172,7 +172,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
             remarks.append(f"{runs.rows_in_words(*np.flatnonzero(shown & holds))}: not used, as {reason}.")
         shown = shown & ~holds
     runs, used = runs._replace(remarks=remarks), shown & ~runs.left_out
-    mistakes: Sequence[tuple[int, Message]] = ()
+    mistakes: Sequence[tuple[int, str]] = ()
     try:
         if not used.any():
             raise CannotSeparate("no run can be used")
@@ -189,8 +189,8 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
             raise CannotSeparate(f"the runs do not {verb} {' from '.join(what)}: {vary}")
         fit = _with_results(runs, used, data, given, names)
     except CannotSeparate as error:
-        parts = mistakes[0][1] if mistakes else error.args
-        raise CannotSeparate(*parts, behind_an_error(remarks)) from None
+        message = mistakes[0][1] if mistakes else "".join(error.args)
+        raise CannotSeparate(f"{message}{behind_an_error(remarks)}") from None
     fit = fit._replace(shown=shown, outliers=[*_outliers(fit)] or mistakes)
     return fit._replace(causes=[*_causes(fit), *_impossible(fit)])
 
@@ -205,12 +205,12 @@ def _with_results(runs: Runs, used: Selection, data: Data, given: Conditions, na
         values, line = estimate(data, given.values, names)
         ends = [[*map(under, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        message: Message = (CHECK,)
+        message = CHECK
         with suppress(CannotSeparate):
             values = by_forces(data, given.values, names)
             line = line_of(of_forces, data, values, names)
             message = _suspects(Fitted(runs, used, used, given, names, data, values, line)) or message
-        raise CannotSeparate(f"{NO_FIT}: ", *message) from None
+        raise CannotSeparate(f"{NO_FIT}: {message}") from None
     results = dict[str, Result]()
     fit = Fitted(runs, used, used, given, names, data, values, line, results)
     by_runs = np.sqrt(line.covariance.diagonal()).tolist()
@@ -219,8 +219,8 @@ def _with_results(runs: Runs, used: Selection, data: Data, given: Conditions, na
         u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in ends))
         results[x] = Result(value, u, (value - line.times * u, value + line.times * u))
         if x in names and _is_negative(x, value, u, line):
-            message = _suspects(fit) or joined(_causes(fit._replace(outliers=[(0, ())])), "; ") or (CHECK,)
-            raise CannotSeparate(f"{equation(x, value, u)} is negative: ", *message)
+            message = _suspects(fit) or "; ".join(_causes(fit._replace(outliers=[(0, "")]))) or CHECK
+            raise CannotSeparate(f"{equation(x, value, u)} is negative: {message}")
     return fit
 
 
@@ -243,13 +243,13 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
 # What may be wrong in all runs
 
 
-def _causes(fit: Fitted) -> list[Message]:
+def _causes(fit: Fitted) -> list[str]:
     """Return a message if one more free quantity repairs a fit, or if sound runs cannot show a delay.
 
     Each is freed in turn. An F test judges what the best takes off χ²; the known variance counts in it unless
     runs scatter more than that with the best, too. Named are all that are as good as the best.
     """
-    freed, delay = list[tuple[Line, Message]](), Message()
+    freed, delay = list[tuple[Line, str]](), ""
     is_open = fit.runs.kind == "time" and "delay" not in fit.names
     for name in (x for x in FITTED if x not in fit.names and (x != "delay" or is_open)):
         names = [*fit.names, name]
@@ -263,7 +263,7 @@ def _causes(fit: Fitted) -> list[Message]:
                 freed.append((line, _cause(name, value, u, fit.given, names)))
             if name == "delay":
                 is_open = line.times * u > WIDE_DELAY
-                delay = (" (", Option("find", ",".join(names)), f" gives {published(value, u)[0]} s)")
+                delay = f" (`--find {','.join(names)}` gives {published(value, u)[0]} s)"
     if freed:
         freed.sort(key=lambda pair: pair[0].chi2)
         best = freed[0][0]
@@ -273,15 +273,15 @@ def _causes(fit: Fitted) -> list[Message]:
             near = [message for line, message in freed if line.chi2 - best.chi2 < NEAR_BEST * scale]
             which = "; they cannot tell which" if near[1:] else ""
             also = ", which may explain outliers, too" if fit.outliers else ""
-            return [("the runs fit better if ", *joined(near, ", or "), f"{which}{also}")]
+            return [f"the runs fit better if {', or '.join(near)}{which}{also}"]
     if not is_open or fit.outliers:
         return []
     wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
-    assumed = f"; the results assume none. {wider}"
-    return [("it is open whether all times are too long by a delay", *delay, assumed)]
+    late = "it is open whether all times are too long by a delay"
+    return [f"{late}{delay}; the results assume none. {wider}"]
 
 
-def _cause(name: str, value: float, u: float, given: Conditions, names: Sequence[str]) -> Message:
+def _cause(name: str, value: float, u: float, given: Conditions, names: Sequence[str]) -> str:
     """Say what a freed quantity would be, and how to fit it."""
     if name == "delay":
         words = f"all times are {published(abs(value), u)[0]} s too {'long' if value > 0 else 'short'}"
@@ -290,11 +290,11 @@ def _cause(name: str, value: float, u: float, given: Conditions, names: Sequence
         unit, instead = QUANTITIES[name].unit, rounded(given.values.get(name, 0.0), 3)
         words = f"{what} is {published(value, u)[0]} {unit}, not {instead}"
     typed = [x for x in QUANTITIES[name].given_by if given.inputs[x].given is not None]
-    without: Message = ("without ", Option(typed[0], ""), ": ") if typed else ()
-    return (f"{words} (", *without, Option("find", ",".join(names)), ")")
+    without = f"without `--{typed[0]}`: " if typed else ""
+    return f"{words} ({without}`--find {','.join(names)}`)"
 
 
-def _impossible(fit: Fitted) -> Iterator[Message]:
+def _impossible(fit: Fitted) -> Iterator[str]:
     """Yield messages on runs that would not move with the fitted axle, and on gravity that is not Earth's."""
     moves = expected(fit.data._replace(drop=None), fit.values) > 0
     for run in np.flatnonzero(fit.used)[~moves].tolist():
@@ -302,16 +302,16 @@ def _impossible(fit: Fitted) -> Iterator[Message]:
             f"{x} = {rounded(column[run], 3)} {parameter_of(x).unit}" for x, column in fit.runs.given.items()
         )
         stuck = "would not move, as the fitted axle holds it"
-        yield (f"{fit.runs.rows_in_words(run)} ({given}) {stuck}: {CHECK}",)
+        yield f"{fit.runs.rows_in_words(run)} ({given}) {stuck}: {CHECK}"
     low, high = fit.results["gravity"].interval if "gravity" in fit.results else EARTH
     if high < EARTH[0] or low > EARTH[1]:
-        yield (f"gravity is not that of Earth, {EARTH[0]} to {EARTH[1]} m/s²: {CHECK}",)
+        yield f"gravity is not that of Earth, {EARTH[0]} to {EARTH[1]} m/s²: {CHECK}"
 
 
 # Outliers
 
 
-def _suspects(fit: Fitted) -> Message:
+def _suspects(fit: Fitted) -> str:
     """Return the outliers if a fit without their runs is one that a pulley explains."""
     suspects, others = [*_outliers(fit)], fit.used.copy()
     others[[run for run, _ in suspects]] = False
@@ -320,11 +320,11 @@ def _suspects(fit: Fitted) -> Message:
             values, line = estimate(as_data(fit.runs, others), fit.given.values, fit.names)
             u = np.sqrt(line.covariance.diagonal())
             if not any(_is_negative(x, values[x], u[i], line) for i, x in enumerate(fit.names)):
-                return joined([message for _, message in suspects], "; ")
-    return ()
+                return "; ".join(message for _, message in suspects)
+    return ""
 
 
-def _outliers(fit: Fitted) -> Iterator[tuple[int, Message]]:
+def _outliers(fit: Fitted) -> Iterator[tuple[int, str]]:
     """Yield outliers among the repeats of each run, and among the runs without these repeats.
 
     What is wrong with a run is named once. Few repeats are judged as runs of their own.
@@ -392,16 +392,16 @@ def _far_runs(fit: Fitted, kept: Selection) -> dict[int, float]:
     return outliers(judge, usable, len(usable) - len(names), OUTLIER_LEVEL)
 
 
-def _far(what: str, distance: float, others: str, where: str) -> Message:
+def _far(what: str, distance: float, others: str, where: str) -> str:
     """Say how many standard deviations something is from others, and how to leave it out."""
     far = f"{rounded(abs(distance))} standard deviations from {others}"
-    return f"{what} {far}; if it is a mistake, leave it out: ", Option("without", where)
+    return f"{what} {far}; if it is a mistake, leave it out: `--without {where}`"
 
 
 # Why there is no result
 
 
-def _mistakes(runs: Runs, used: Selection, data: Data, g: float) -> list[tuple[int, Message]]:
+def _mistakes(runs: Runs, used: Selection, data: Data, g: float) -> list[tuple[int, str]]:
     """Return the first run that must have a mistake. Raises CannotSeparate if most runs have one.
 
     Accelerations, which may be small, are compared with those of free masses.
@@ -418,4 +418,4 @@ def _mistakes(runs: Runs, used: Selection, data: Data, g: float) -> list[tuple[i
     words = f"{runs.rows_in_words(run)}: {what} = {far}; {CHECK}"
     if is_mistaken.mean() > 0.5:
         raise CannotSeparate(words)
-    return [(run, (words,))]
+    return [(run, words)]

@@ -27,10 +27,10 @@ LEAST_SHARE = 1e-4
 
 
 class CannotSeparate(ArithmeticError):
-    """The runs do not determine the quantities to be fitted. Its arguments are the parts of a message."""
+    """The runs do not determine the quantities to be fitted; why is a message for `sentence`."""
 
     def __str__(self) -> str:
-        return sentence(self.args)
+        return sentence("".join(self.args))
 
 
 class Line(NamedTuple):

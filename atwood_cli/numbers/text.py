@@ -1,8 +1,8 @@
 """Texts as messages show them."""
 
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from typing import NamedTuple
 
 EXTRAS = {"matplotlib": "figure", "polars": "batch", "scipy": "fit"}
 """The extras that bring optional packages."""
@@ -15,33 +15,20 @@ def shortened(text: str, most: int = 60) -> str:
     return text if len(text) <= most else f"{text[: most - 20]}...{text[-10:]}"
 
 
-class Option(NamedTuple):
-    """An option that a message names: --find a,b on the command line, find='a,b' in Python."""
-
-    name: str
-    value: str = ""
+OPTION = re.compile(r"`--(\w+) ?(.*?)`")
+"""An option that a message names, with its value if it has one."""
 
 
-Message = tuple[str | Option, ...]
-"""A message in parts, without a capital and a period, so that each door has its own words for options."""
+def sentence(message: str, in_python: bool = False) -> str:
+    """Return a message with its options as they are typed: --find a,b, or in Python find='a,b'."""
 
+    def typed(option: re.Match[str]) -> str:
+        name, value = option.groups()
+        if not in_python:
+            return option[0].strip("`")
+        return f"{name}={value!r}" if value else name
 
-def sentence(message: Message, in_python: bool = False) -> str:
-    """Return a message as the command line words it, or as Python does."""
-    words = []
-    for part in message:
-        if isinstance(part, str):
-            words.append(part)
-        elif in_python:
-            words.append(f"{part.name}={part.value!r}" if part.value else part.name)
-        else:
-            words.append(f"--{part.name} {part.value}".rstrip())
-    return "".join(words)
-
-
-def joined(messages: Iterable[Message], between: str) -> Message:
-    """Return messages as one."""
-    return sum(((between, *message) for message in messages), Message())[1:]
+    return OPTION.sub(typed, message)
 
 
 def in_quotes(value: object) -> str:

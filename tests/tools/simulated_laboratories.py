@@ -156,8 +156,7 @@ def given_as(**typed: str) -> Conditions:
 
 def cause_of(fit: Fitted) -> str:
     """What is said to repair the fit, "" if nothing is."""
-    causes = ["".join(map(str, message)) for message in fit.causes]
-    return next((words for words in causes if "fit better if" in words), "")
+    return next((words for words in fit.causes if "fit better if" in words), "")
 
 
 def expected(kind: Kind, l: Any, h: Any, c: Any, f: Any, g: Any = G, drop: Any = DROP) -> Any:
@@ -308,7 +307,7 @@ def outliers_beside_delay(case: int, sets: int) -> tuple[float, Any]:
         made, off = drawn(Design(8, 1, 0.003, "vary", delay=0.3), random), int(random.integers(8))
         made.values[off] += random.choice([-0.06, 0.06])
         try:
-            said = [words[0] for run, words in made.fit(given=given, find=find).outliers if run == off]
+            said = [words for run, words in made.fit(given=given, find=find).outliers if run == off]
         except CannotSeparate as error:
             said = re.findall(rf"row {off + 1} is [^;]+", str(error))
         far = (float(re.findall(r"is ([\d.e+]+) standard", str(words))[0]) for words in said[:1])
