@@ -44,14 +44,14 @@ MASSLESS_ASSUMED = "0, as M is not given and a massless pulley needs no friction
 LimitingCase = Literal["as_given", "locked", "massless", "heaviest", "heaviest_at_rest", "lightest_at_rest"]
 
 
-def is_column(value: object) -> bool:
-    """Decide whether an input is a column of many rows, as in `arrays`, and no single number."""
-    return not hasattr(value, "numerator")
+def is_number(value: object) -> bool:
+    """Decide whether an input is a finite number: not given or infinite, or a column of rows, it is none."""
+    return hasattr(value, "numerator")
 
 
 def is_zero(value: object) -> bool:
     """Decide whether an input is exactly 0. A column is not: rows with a zero are a group of their own."""
-    return not is_column(value) and not value
+    return is_number(value) and not value
 
 
 class Decisions:
@@ -84,7 +84,7 @@ class Decisions:
     @property
     def one_mass_is_0(self) -> bool:
         """Whether one mass is 0; or below, as a mass that is found with an uncertain acceleration may be."""
-        return not is_column(self.light) and self.light <= 0
+        return is_number(self.light) and self.light <= 0
 
     @lazy
     def locked(self) -> bool:

@@ -456,7 +456,7 @@ class Machine(Generic[N]):
         if drop is not None:
             return drop
         if speed is not None:
-            return physics.by_speed(speed, a)
+            return physics.by_speed_and_height(speed, a)
         assert time is not None
         return physics.height_in_time(a, time)
 
@@ -465,14 +465,20 @@ class Machine(Generic[N]):
         a, drop, time, speed = self._fall()
         if time is not None:
             return time
-        return speed / a if drop is None else physics.fall_time(drop, a, self.ar.sqrt)
+        if drop is not None:
+            return physics.fall_time(drop, a, self.ar.sqrt)
+        assert speed is not None
+        return physics.by_speed_and_time(speed, a)
 
     @property
     def final_speed(self) -> N:
         a, drop, time, speed = self._fall()
         if speed is not None:
             return speed
-        return a * time if drop is None else physics.final_speed(drop, a, self.ar.sqrt)
+        if drop is not None:
+            return physics.final_speed(drop, a, self.ar.sqrt)
+        assert time is not None
+        return physics.speed_after(a, time)
 
     def _fall(self) -> tuple[N, N | None, N | None, N | None]:
         """Return the acceleration (m/s²), and height, time and speed of a fall; None if one is not given."""

@@ -158,10 +158,10 @@ def acceleration_of_fall(drop: N, time: N) -> N:
     return 2 * drop / (time * time)
 
 
-def by_speed(speed: N, other: N) -> N:
+def by_speed_and_height(speed: N, other: N) -> N:
     """Return the acceleration (m/s²) of a fall from rest to ``speed`` (m/s), or its height (m), by the other.
 
-    >>> by_speed(6, 9), by_speed(6, 2)
+    >>> by_speed_and_height(6, 9), by_speed_and_height(6, 2)
     (2.0, 9.0)
     """
     return speed * speed / (2 * other)
@@ -174,6 +174,24 @@ def height_in_time(a: N, time: N) -> N:
     9.0
     """
     return a * time * time / 2
+
+
+def by_speed_and_time(speed: N, other: N) -> N:
+    """Return the acceleration (m/s²) of a fall from rest to ``speed`` (m/s), or its time (s), by the other.
+
+    >>> by_speed_and_time(6, 3), by_speed_and_time(6, 2)
+    (2.0, 3.0)
+    """
+    return speed / other
+
+
+def speed_after(a: N, time: N) -> N:
+    """Return the speed (m/s) after a time (s) from rest with the acceleration ``a`` (m/s²).
+
+    >>> speed_after(2, 3)
+    6
+    """
+    return a * time
 
 
 def fall_time(drop: N, a: N, sqrt: Function[N]) -> N:

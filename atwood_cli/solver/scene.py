@@ -270,9 +270,9 @@ class Motion(NamedTuple):
             return sign * self.a
         drop, time, speed = (cast(Fraction, getattr(self, name)) for name in FALL)
         if drop is None:
-            a = speed / time
+            a = physics.by_speed_and_time(speed, time)
         elif time is None:
-            a = physics.by_speed(speed, drop)
+            a = physics.by_speed_and_height(speed, drop)
         else:
             a = physics.acceleration_of_fall(drop, time)
         return sign * self.direction * a if self.finds in MASSES else a
