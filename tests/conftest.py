@@ -17,7 +17,7 @@ ANYWHERE = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.functi
 settings.register_profile("every-digit", deadline=None, suppress_health_check=ANYWHERE)
 settings.register_profile("usual", settings.get_profile("every-digit"), max_examples=25)
 settings.register_profile("quick", settings.get_profile("every-digit"), max_examples=3)
-SLOW = "arrays bounds closed_forms contact explain fit fuzz help kills parquet pictures sweep terminal ties tradeoff uncertainty".split()
+SLOW = "arrays bounds contact explain fit fuzz help kills parquet pictures sweep terminal ties tradeoff uncertainty".split()
 """What --quick leaves out, with all pictures: transcripts and doors see most faults that these see, and sooner."""
 
 
