@@ -183,8 +183,6 @@ def test_the_setup_commands_are_what_the_workflow_runs() -> None:
 
 
 def test_a_query_keeps_rows_that_are_no_scenes() -> None:
-    import polars as pl
-
     run = runpy.run_path(str(TOP / "examples" / "polars_lazy.py"))
     frame = pl.LazyFrame(
         {"m1": [1.0, -1.0, nan, inf, None, 1.0, 1.0], "m2": 3.0, "M": 50.0, "mu": [0.3] * 6 + [None]}

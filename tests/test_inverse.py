@@ -82,32 +82,6 @@ def test_the_results_that_are_found() -> None:
     assert measured(a="4.903325").pulley_mass == 0  # the massless pulley itself
 
 
-@pytest.mark.parametrize("time", ["2", "1.25", "4/3", "1.2345678901234567890123"])
-def test_a_time_stands_for_the_acceleration_it_implies(time: str) -> None:
-    t = Fraction(time)
-    a = 4 / t**2
-    s = measured(drop="2", time=t)
-    assert (s.fall_time, s.final_speed, s.acceleration) == (float(t), float(4 / t), float(a))
-    assert s.pulley_mass == measured(a=a).pulley_mass
-    mirrored = measured(m1="3", m2="1", drop="2", time=t)
-    assert (mirrored.acceleration, mirrored.pulley_mass) == (-float(a), s.pulley_mass)
-
-
-ROOTS = [
-    ("3.125", 1, "2"),
-    ("6.125", 1, "4"),
-    ("3.125", 5, "2.5000"),
-    ("1", 30, "1.41421356237309504880168872421"),
-]
-"""√(2 H/1): perfect squares, ties among them, and one that is none."""
-
-
-@pytest.mark.parametrize(("drop", "digits", "shown"), ROOTS)
-def test_roots_are_exact_where_they_are_rational_and_ties_end(drop: str, digits: int, shown: str) -> None:
-    s = measured(a="1", drop=drop, digits=digits)
-    assert str(s.fall_time) == str(s.final_speed) == shown
-
-
 @pytest.mark.parametrize("masses", ["m1=1", "m1=3 m2=1", "m2=1.1", "m1=7 m2=2.9", "m1=0.1 m2=0.3"])
 def test_about_the_greatest_acceleration_that_an_error_names_is_taken(masses: str) -> None:
     given = inputs(f"{masses} M=inf")

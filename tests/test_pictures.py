@@ -393,19 +393,6 @@ def test_what_matplotlib_warns_of_reaches_nobody(monkeypatch: pytest.MonkeyPatch
     running.drawn(f"solve {FIGURE}")
 
 
-def test_a_picture_that_cannot_be_written_is_a_sentence_and_no_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def on_a_full_disk(file: Path, content: bytes) -> None:
-        file.open("wb").write(content[:9])
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "write_bytes", on_a_full_disk)
-    ran = called(["solve", *FIGURE.split(), "--figure", f"{tmp_path}/a.svg"])
-    assert ran == (1, "", f"atwood: cannot write {tmp_path}/a.svg: No space left on device\n")
-    assert list(tmp_path.iterdir()) == []
-
-
 # The picture of tradeoff
 
 

@@ -17,7 +17,7 @@ from atwood_cli.sweep.ranges import read_sweep
 
 from .conftest import examples
 from .tools import oracle
-from .tools.scenes import with_friction
+from .tools.scenes import G, with_friction
 
 positive = st.decimals(Decimal("0.01"), Decimal(100), places=4, allow_nan=False)
 
@@ -101,3 +101,19 @@ def test_what_is_known_is_not_asked_again() -> None:
     said = {Fraction(0): "slip"}  # as if
     (change,) = changes(swept.scene, swept.ranges[0], known=said)
     assert (change.before, change.at.exact, change.after) == ("slip", 0, "no-slip")
+
+
+@examples(40)
+@given(st.floats(1e-3, 1e3), st.floats(1.01, 100), st.floats(0.01, 0.99))
+def test_the_motion_is_continuous_where_the_string_begins_to_slip(
+    m1: float, ratio: float, share: float
+) -> None:
+    """On which side of it a pulley is, is decided at any closeness."""
+    m2, mu = m1 * ratio, share * log(ratio) / pi
+    critical = solve(m1=m1, m2=m2, mu=mu, digits=1000).critical_pulley_mass or 0
+    grips, slips = (
+        solve(m1=m1, m2=m2, mu=mu, g=G, M=Fraction(critical) + Fraction(off, 10**900)) for off in (-1, 1)
+    )
+    assert (grips.regime, slips.regime) == ("no-slip", "slip")
+    for name in ("acceleration", "tension_1", "tension_2", "rim_acceleration"):
+        assert getattr(slips, name) == getattr(grips, name)

@@ -116,25 +116,6 @@ def test_every_row_and_every_column_is_shown() -> None:
     assert ["critical_pulley_mass" in seen for seen in terminals] == [False, False, True]
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "solve --m1 1 --m2 3 --M 10 --axle 1 --all",
-        "sweep --m1 1 --m2 3 --M 1:1000:3:log --mu 0.2:0.4:2",
-        "contact --m1 1 --m2 3 --M 10 --mu 0.3 --R 0.1",
-        f"fit {TOP}/examples/rit.csv --drop 98cm",
-    ],
-)
-def test_no_cell_is_folded(line: str) -> None:
-    """Of a sweep at 80 columns, `no-slip` became `no-sli` and `p`. Each row has a number, or begins a group."""
-    for columns in (60, 80, 100, 120):
-        seen = plain(on_terminal(*line.split(), columns=columns))
-        for row in re.findall(r"^│(.*)│$", seen, re.MULTILINE):
-            cells = [cell.strip() for cell in row.split("│")]
-            assert cells[0] or not any(re.match(r"-?\d", cell) for cell in cells[1:]), row
-        assert "no-sli │" not in seen
-
-
 # Files
 
 RIT = TOP / "examples" / "rit.csv"
