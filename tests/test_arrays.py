@@ -62,14 +62,12 @@ def alike(family: str, count: int) -> list[Given]:
 def hostile() -> list[tuple[Columns, Columns]]:
     """Rows that lose digits, and ordinary ones, with their exact results."""
     rng = np.random.default_rng(24)
-    m1, M, mu, axle = (
-        10 ** rng.uniform(low, high, 24) for low, high in ((-1, 1), (-2, 3), (-2, 0.3), (-2, 2))
-    )
+    m1, M, mu, f = (10 ** rng.uniform(low, high, 24) for low, high in ((-1, 1), (-2, 3), (-2, 0.3), (-2, 2)))
     masses = {"m1": m1, "m2": m1 * (1 + 10 ** rng.uniform(-2, 1, 24)), "M": M, "R": 1.0}
     wrap = {"wrap": rng.uniform(1, 720, 24)}
     families = [
         *(columns_of(alike(danger, 24)) for danger in DANGERS),
-        masses | {"mu": mu, "axle": axle},
+        masses | {"mu": mu, "axle": f},
         masses | wrap,
         masses | wrap | {"mu": mu},
         masses | {"mu": 10 ** rng.uniform(0, 1.5, 24)},
@@ -118,6 +116,7 @@ mixed_rows = st.fixed_dictionaries(
 )
 
 
+@example([{"m1": 1.0, "m2": 3.0, "M": M, "I": 0.08, "R": 0.1} for M in (8.0, inf, 0.0)], ["torque"])
 @example([MIRRORED], NAMES)
 @example([MIRRORED] * 5, NAMES)
 @examples(40)
@@ -220,10 +219,8 @@ def reasons_of(rows: list[Row]) -> Counter[tuple[str, str]]:
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)
 @pytest.mark.parametrize("chunk", [7, arrays.CHUNK_ROWS])
-def test_why_values_are_missing_is_counted(
-    accuracy: Any, chunk: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Whichever rows are solved together."""
+def test_missing_values_are_counted(accuracy: Any, chunk: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By why they are missing, whichever rows are solved together."""
     monkeypatch.setattr(arrays, "CHUNK_ROWS", chunk)
     rng = Random(5)
     numbers = {"m1": (1, 2, 0), "m2": (1, 2, 3), "M": (None, 0, 1, 100, inf), "mu": (None, 0, 0.1, 1)}
@@ -296,9 +293,7 @@ def test_chunks_and_tiles_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)
-def test_the_bytes_are_the_same_on_any_number_of_processors(
-    accuracy: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_bytes_are_the_same_on_all_processors(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(arrays, "CHUNK_ROWS", 20)
     given = columns_of(alike("ordinary", 50) + alike("near_critical", 100))
     results = []
@@ -363,9 +358,7 @@ def test_temporaries_are_bounded() -> None:
 
 
 @pytest.mark.parametrize("few", [0, 1, 4, 1000])
-def test_rows_of_the_next_level_are_solved_together_or_one_by_one(
-    few: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_rows_of_the_next_level_together_or_one_by_one(few: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """And some need two more levels."""
     given = columns_of(alike("ordinary", 50) + alike("near_critical", 200))
     exact = solve_arrays(**given, accuracy="exact")
@@ -439,9 +432,7 @@ def test_what_is_beyond_the_doubles_is_neither_0_nor_infinite(value: Any) -> Non
     assert solve_arrays(1.0, 3.0, M=masked)["acceleration"][-1] == solve_arrays(1.0, 3.0)["acceleration"]
 
 
-@pytest.mark.parametrize(
-    "value", [0, -0.0, "0", b"-0", "0e500", Decimal(0), Fraction(0), np.longdouble(0)], ids=repr
-)
+@pytest.mark.parametrize("value", [0, -0.0, "0", b"-0", "0e500", Decimal(0), Fraction(0), np.longdouble(0)])
 def test_0_and_infinity_of_any_type_are_themselves(value: Any) -> None:
     infinite: Any = [Decimal("inf"), "-inf", np.longdouble("inf")]
     for same, double in ((value, 0.0), (infinite, np.array([inf, -inf, inf]))):
@@ -521,10 +512,7 @@ def test_quantities_by_their_symbols_have_their_names(words: Any) -> None:
         ({"m1": None}, "m1 is missing; give both masses, m1 and m2"),
         ({"m2": None}, "m2 is missing; give both masses, m1 and m2"),
         ({"inertia": [np.str_("hoop")]}, "inertia must be real numbers: .*: 'hoop'"),  # was np.str_('hoop')
-        (
-            {"m1": [1, 2, 3], "M": [1, 2]},
-            r"M of shape \(2,\) does not broadcast with \(3,\), the shape of what comes before it",
-        ),
+        ({"m1": [1] * 3, "M": [1] * 2}, r"M of shape \(2,\) does not broadcast with \(3,\), the shape of .*"),
     ],
 )
 def test_errors(arguments: dict[str, Any], message: str) -> None:

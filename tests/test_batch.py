@@ -73,17 +73,18 @@ def test_every_format(atwood: Atwood, tmp_path: Path, kind: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "line",
-    [
-        "atwood batch <(cat in) --only regime > out",
-        "cat in | atwood batch - --from parquet --only regime > out",
-    ],
+    ("line", "kind"),
+    [("atwood batch <(cat in)", "csv"), ("cat in | atwood batch - --from parquet", "parquet")],
 )
-def test_streams(tmp_path: Path, line: str) -> None:
+def test_streams(tmp_path: Path, line: str, kind: str) -> None:
     """A pipe by any name is CSV, if nothing else is said."""
-    write, read = KINDS["parquet" if "parquet" in line else "csv"]
+    write, read = KINDS[kind]
     write(pl.DataFrame({"m1": [1.0], "m2": [3.0]}), tmp_path / "in")
-    assert process(shell=f"cd {tmp_path}; {line}") == (0, "", "atwood: 1 row: 1 no-slip; no errors.\n")
+    assert process(shell=f"cd {tmp_path}; {line} --only regime > out") == (
+        0,
+        "",
+        "atwood: 1 row: 1 no-slip; no errors.\n",
+    )
     assert read(tmp_path / "out").rows() == [(1.0, 3.0, "no-slip", None)]
 
 
@@ -161,9 +162,7 @@ LEFT_OPEN = "is longer than 1 MB, the most taken; is a quotation mark left open?
     ],
     ids=count(),
 )  # fmt: skip
-def test_what_is_too_large_for_a_table(
-    batch: Batch, tmp_path: Path, name: str, content: str, why: str
-) -> None:
+def test_what_is_too_large(batch: Batch, tmp_path: Path, name: str, content: str, why: str) -> None:
     ran = batch(content, f"-o OUT{Path(name).suffix}", name)
     assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: cannot read IN: {why}\n")
     assert [path.name for path in tmp_path.iterdir()] == [name]

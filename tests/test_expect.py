@@ -24,10 +24,7 @@ def test_it_is_decided_exactly(m1: int, m2: int, M: int, off: int, digits: int) 
     bound = a + off * Fraction(1, 10**digits)
     for sign, holds in {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq}.items():
         assert (not failure(answers, read_condition(f"a {sign} {bound}"))) == holds(a, bound)
-    for share in (
-        Fraction(1),
-        Fraction(999, 1000),
-    ):  # the end of the uncertainty is the quantity, or not quite
+    for share in (Fraction(1), Fraction(999, 1000)):  # up to the quantity, or not quite
         within = read_condition(f"a == {bound}±{abs(bound - a) * share}")
         assert (not failure(answers, within)) == (share == 1 or off == 0)
     answers = read_answers({"m1": 1, "m2": 2, "mu": "0.01"}, None)

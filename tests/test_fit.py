@@ -131,9 +131,8 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
 def test_what_simulation_decided_is_so() -> None:
     """Before, a third run had the width 4.3; 29 % of readings to 1 ms were accused; nothing said that a watch is late."""
     assert max(counts(CELLS[0], 30).width) < 1.6
-    assert (
-        counts(Design(4, 1, 0.15, "vary"), 30, "delay").refused < 15
-    )  # was 40: steps led away from the best
+    # It was 40: steps led away from the best.
+    assert counts(Design(4, 1, 0.15, "vary"), 30, "delay").refused < 15
     read = counts(Design(8, 5, 1e-4, step=1e-3), 20)
     assert (read.accused, read.scatters, max(read.width) < 2.4) == (0, 0, True)
     late = DELAYS[0]._replace(delay=0.15)

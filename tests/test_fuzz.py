@@ -198,10 +198,9 @@ AROUND = {"csv": ("m1,m2", "1,3"), "tsv": ("m1\tm2", "1\t3"), "ndjson": ("", '{"
 @pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, lines in ODD.items() for name in lines])
 def test_a_deep_or_huge_value_is_an_error_of_its_row(kind: str, name: str) -> None:
     head, row = AROUND[kind]
+    table = "\n".join([head, row, ODD[kind][name], row]).encode()
     begun = process_time()
-    ran = called(
-        ["batch", "-", "--from", kind, "--only", "a"], "\n".join([head, row, ODD[kind][name], row]).encode()
-    )
+    ran = called(["batch", "-", "--from", kind, "--only", "a"], table)
     assert process_time() - begun < 1
     assert ran.status == 1
     assert "atwood: 3 rows: 2 no-slip; 1 error.\natwood: first error, in row 2: " in ran.err

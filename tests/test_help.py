@@ -33,9 +33,8 @@ def test_every_option_says_what_it_means_and_in_which_group(command: str) -> Non
     *params, the_help = GROUP.commands[command].get_params(typer.Context(GROUP.commands[command]))
     assert "--help" in the_help.opts
     assert all(param.help.endswith(".") for param in params)
-    assert {param.rich_help_panel for param in params} <= {
-        *"Scene Arc Measured Measurement Output Files".split()
-    }
+    groups = "Scene Arc Measured Measurement Output Files".split()
+    assert {param.rich_help_panel for param in params} <= {*groups}
     assert all(getattr(param, "is_flag", False) or param.metavar for param in params)
 
 

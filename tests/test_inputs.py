@@ -146,9 +146,7 @@ AXLES: dict[Any, Any] = {
 @pytest.mark.parametrize("dimension", UNITS)
 def test_every_unit_is_the_one_that_is_defined(dimension: str) -> None:
     words = BY_DEFINITION[dimension].split()
-    defined = {
-        unit.replace("_", " "): Fraction(value) for unit, value in zip(words[::2], words[1::2], strict=True)
-    }
+    defined = {unit.replace("_", " "): Fraction(x) for unit, x in zip(words[::2], words[1::2], strict=True)}
     assert {unit: Fraction(value) for unit, value in UNITS[dimension].items()} == defined
 
 

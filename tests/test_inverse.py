@@ -91,9 +91,7 @@ def test_about_the_greatest_acceleration_that_an_error_names_is_taken(masses: st
     assert solve(**given, a=Fraction(greatest) * Fraction("0.99999")).mu_k is not None
 
 
-sizes = st.builds(
-    lambda digits, power: Fraction(digits) * Fraction(10) ** power, masses, st.integers(-150, 150)
-)
+sizes = st.builds(lambda mass, power: mass * Fraction(10) ** power, masses, st.integers(-150, 150))
 
 
 @given(masses | sizes, masses_or_0 | sizes, masses_or_0, masses | sizes, masses_or_0 | sizes, st.booleans())

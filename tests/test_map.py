@@ -72,9 +72,8 @@ for words in ("solve --M 2 --axle .5 --brake .5N --only a", "solve --only Q", "s
 @pytest.fixture
 def changed(tmp_path: Path) -> Path:
     """A copy of the project with all these changes."""
-    copied = copytree(
-        TOP, tmp_path / "copy", ignore=ignore_patterns(".git", "*venv*", ".*cache", "__pycache__")
-    )
+    ignored = ignore_patterns(".git", "*venv*", ".*cache", "__pycache__")
+    copied = copytree(TOP, tmp_path / "copy", ignore=ignored)
     for change, name, before, line in CHANGES:
         (row,) = re.findall(rf"^\| {change}.*", MAP, re.MULTILINE)
         file = name if "." in name else f"{name}.py"
@@ -88,17 +87,9 @@ def changed(tmp_path: Path) -> Path:
 def test_the_suite_passes_with_what_the_map_names(changed: Path, pytestconfig: pytest.Config) -> None:
     if not pytestconfig.getoption("every_digit"):
         pytest.skip("a suite in the suite: --every-digit")
-    for words in (
-        ["tests.tools.regenerate", "--accept"],
-        ["pytest", "--quick", "--ignore", "tests/test_map.py"],
-    ):
-        ran = run(
-            [sys.executable, "-m", *words],
-            cwd=changed,
-            env={**os.environ, "PYTHONPATH": str(changed)},
-            capture_output=True,
-            text=True,
-        )
+    for words in ("tests.tools.regenerate --accept", "pytest --quick --ignore tests/test_map.py"):
+        command, env = [sys.executable, "-m", *words.split()], {**os.environ, "PYTHONPATH": str(changed)}
+        ran = run(command, cwd=changed, env=env, capture_output=True, text=True)
         assert ran.returncode == 0, ran.stdout[-2000:]
 
 
@@ -130,9 +121,8 @@ def lacking() -> Iterator[str]:
             if not sign.isascii() and ord(sign) not in IN_LATEX:
                 yield f"atwood_cli/output/typeset.py: {sign!r} has no LaTeX in SIGNS"
     source = Path(quantities.__file__).read_text(encoding="utf-8")
-    for name in re.findall(
-        r"^([A-Z_]+) = ", source.partition("# Why")[2].partition("# Names")[0], re.MULTILINE
-    ):
+    reasons = source.partition("# Why")[2].partition("# Names")[0]
+    for name in re.findall(r"^([A-Z_]+) = ", reasons, re.MULTILINE):
         reason = getattr(quantities, name)
         if not name.startswith(OF_MOTION) and reason not in REASONS:
             yield f"tests/test_sentences.py: REASONS has no {name}"

@@ -163,9 +163,7 @@ THREE = pl.DataFrame({"m1": [1] * 300, "m2": [3] * 300, "s": [None if i % 7 else
 
 
 @pytest.mark.parametrize(("whole", "rows"), [(written(THREE), 300), (ARROW, 2)], ids=["polars", "arrow"])
-def test_a_damaged_file_is_an_error(
-    solved: Any, pytestconfig: pytest.Config, whole: bytes, rows: int
-) -> None:
+def test_damage_is_an_error(solved: Any, pytestconfig: pytest.Config, whole: bytes, rows: int) -> None:
     """Whichever byte of it changes: no row is lost in silence, and nothing of polars' reaches stderr."""
     said, unsaid = set(), 0
     for place in range(5, len(whole), len(whole) // (250 if pytestconfig.getoption("every_digit") else 50)):

@@ -40,16 +40,15 @@ def test_limits_are_points_of_the_one_formula(
     l: Fraction, more: Fraction, C: Fraction, b: Fraction, D: Fraction
 ) -> None:
     h, g, none = l + b + more, Fraction(9), Fraction(0)
-    assert physics.gripping_ratio_minus_1(l, h, C, b, D) == physics.gripping_ratio_minus_1(
-        l, h, C / D, b, one
-    )
+    ratio_minus_1 = physics.gripping_ratio_minus_1
+    assert ratio_minus_1(l, h, C, b, D) == ratio_minus_1(l, h, C / D, b, one)
     for heavy in (h, l + b, l + b / 2):  # a pulley that stands, and tensions that are weights
-        assert l * (1 + physics.gripping_ratio_minus_1(l, heavy, C, b, none)) == heavy
-    assert physics.gripping_ratio_minus_1(l, l + b, C, b, D) == b / l  # the greatest difference that is held
-    assert physics.gripping_ratio_minus_1(h - b, h, C, b, D) == b / (h - b)  # the lightest mass that is held
+        assert l * (1 + ratio_minus_1(l, heavy, C, b, none)) == heavy
+    assert ratio_minus_1(l, l + b, C, b, D) == b / l  # the greatest difference that is held
+    assert ratio_minus_1(h - b, h, C, b, D) == b / (h - b)  # the lightest mass that is held
     # Without mass the pulley passes on all but what the axle takes.
     a = physics.acceleration(physics.drive(l, h, b), physics.load(l, h, none), g)
-    assert physics.light_tension(l, a, g) * physics.gripping_ratio_minus_1(l, h, none, b, D) == b * g
+    assert physics.light_tension(l, a, g) * ratio_minus_1(l, h, none, b, D) == b * g
     # Under a mass beyond all bounds all falls freely, so T_l = 2 l g.
     assert 2 * l * g * physics.heaviest_ratio_minus_1(l, C, b) == C * g + b * g
 

@@ -2,7 +2,7 @@
 
 from decimal import Decimal
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import log, pi
 from random import Random
 
@@ -43,9 +43,8 @@ def check_with_oracle(words: dict[str, str], *places: float) -> int:
     (along,) = swept.ranges
     said = list(changes(swept.scene, along))
     low, high = along.ends
-    stretches = list(
-        pairwise([low, *(end for change in said for end in (change.holds_at, change.differs_at)), high])
-    )
+    ends = chain.from_iterable((change.holds_at, change.differs_at) for change in said)
+    stretches = list(pairwise([low, *ends, high]))
     in_turn = [said[0].before if said else Decisions(swept.scene).regime, *(change.after for change in said)]
     assert in_turn[:-1] == [change.before for change in said]
     for change in said:
@@ -105,15 +104,12 @@ def test_what_is_known_is_not_asked_again() -> None:
 
 @examples(40)
 @given(st.floats(1e-3, 1e3), st.floats(1.01, 100), st.floats(0.01, 0.99))
-def test_the_motion_is_continuous_where_the_string_begins_to_slip(
-    m1: float, ratio: float, share: float
-) -> None:
+def test_motion_is_continuous_where_slip_begins(m1: float, ratio: float, share: float) -> None:
     """On which side of it a pulley is, is decided at any closeness."""
     m2, mu = m1 * ratio, share * log(ratio) / pi
     critical = solve(m1=m1, m2=m2, mu=mu, digits=1000).critical_pulley_mass or 0
-    grips, slips = (
-        solve(m1=m1, m2=m2, mu=mu, g=G, M=Fraction(critical) + Fraction(off, 10**900)) for off in (-1, 1)
-    )
+    pulleys = (Fraction(critical) + Fraction(off, 10**900) for off in (-1, 1))
+    grips, slips = (solve(m1=m1, m2=m2, mu=mu, g=G, M=pulley) for pulley in pulleys)
     assert (grips.regime, slips.regime) == ("no-slip", "slip")
     for name in ("acceleration", "tension_1", "tension_2", "rim_acceleration"):
         assert getattr(slips, name) == getattr(grips, name)

@@ -84,13 +84,13 @@ def test_a_column_that_is_refused_may_pass_as_a_label(columns: str) -> None:
     assert last not in [one.column for one in headings.read_headings([*others, last], vocabulary, [last])]
 
 
-DOUBTFUL = (
-    "M: Mass|pulley_mass|Pulley mass (g)|pulley mass, g|m|m_kg; mu: μ|µ|friction|MU; g: gravity|G; wrap: φ"
-)
-DOUBTFUL += "; inertia: beta|Inertia; I: moment of inertia; R: radius|radius_cm|r cm; axle: Axle (N)|Axle_mN"
+DOUBTFUL = """
+M: Mass|pulley_mass|Pulley mass (g)|pulley mass, g|m|m_kg; mu: μ|µ|friction|MU; g: gravity|G; wrap: φ
+inertia: beta|Inertia; I: moment of inertia; R: radius|radius_cm|r cm; axle: Axle (N)|Axle_mN
+"""
 
 
-@pytest.mark.parametrize("words", DOUBTFUL.split("; "))
+@pytest.mark.parametrize("words", re.split("; |\n", DOUBTFUL.strip()))
 def test_a_heading_that_may_mean_an_input_is_refused(words: str) -> None:
     name, headings = words.split(": ")
     for heading in headings.split("|"):
@@ -196,10 +196,7 @@ UNIT_OF_M1 = "'m1 (kg)' as m1 in kg; 'm2' in kg, 'time' in s, as no unit is give
         (TABLE.replace("m1", '"m1\n(kg)"'), UNIT_OF_M1),
         (TABLE.encode("utf-16"), ""),  # as Excel saves "Unicode text"
         (b"\xfe\xff" + TABLE.replace(",", "\t").encode("utf-16-be"), ""),
-        (
-            "m1,m2,time,mean,std\n.2,.207,3.99,4,1\n.201,.206,5.02,5,1\n",
-            "'mean' as a label, 'std' as a label",
-        ),
+        ("m1,m2,time,mean\n.2,.207,3.99,4\n.201,.206,5.02,5\n", "'mean' as a label"),
         (TABLE.replace("0.2,", "0.2kg,").replace("0.206", "206 g"), ""),
     ],
 )
@@ -360,12 +357,7 @@ def test_a_small_file_does_not_fill_the_memory(tmp_path: Path, monkeypatch: pyte
 
 def test_columns_are_as_a_file_of_them(read: Any, tmp_path: Path) -> None:
     polars = pytest.importorskip("polars")
-    columns: dict[str, Any] = {
-        "m1": [0.2, 0.201],
-        "m2": [0.207, 0.206],
-        "t1": [3.99, 5.02],
-        "t2": [4.01, nan],
-    }
+    columns: Any = {"m1": [0.2, 0.201], "m2": [0.207, 0.206], "t1": [3.99, 5.02], "t2": [4.01, nan]}
     want = read("m1\tm2\tt1\tt2\n0.2\t0.207\t3.99\t4.01\n0.201\t0.206\t5.02\t\n", "runs.tsv")
     assert numbers(want) == exactly("0.2 0.207 3.99 4.01 0 0 0 0", "0.201 0.206 5.02 0 0 0")
     missing = columns | {"t2": [4.01, None]}

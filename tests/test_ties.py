@@ -75,15 +75,10 @@ IRRATIONAL: dict[str, tuple[Quantity, Fraction]] = {
 def test_a_rational_value_is_rounded_as_what_it_is(name: str) -> None:
     """Moved by a rational number, the value becomes a tie, or lies beside one by 10^-40."""
     quantity, value = RATIONAL[name]
-    for wanted, digits in (
-        (F(1, 8), "0.12"),
-        (F(1, 8) + F(1, 10**40), "0.13"),
-        (F(1, 8) - F(1, 10**40), "0.12"),
-        (F(0), "0"),
-    ):
-        assert settle(lambda ar, by=wanted - value: quantity(ar) + ar.number(by), to_digits(2), 2) == Decimal(
-            digits
-        )
+    tie, tiny = F(1, 8), F(1, 10**40)
+    for wanted, shown in ((tie, "0.12"), (tie + tiny, "0.13"), (tie - tiny, "0.12"), (F(0), "0")):
+        rounded = settle(lambda ar, by=wanted - value: quantity(ar) + ar.number(by), to_digits(2), 2)
+        assert rounded == Decimal(shown)
 
 
 @pytest.mark.parametrize("name", IRRATIONAL)

@@ -115,9 +115,7 @@ def test_an_uncertainty_is_made_of_steps_that_solve_makes() -> None:
                     ends[x] = [solved_if_valid(ends_of(x, given, step)) for step in off]
             regimes += any(end and end.regime != here.regime for pair in ends.values() for end in pair)
             for name, u in found.uncertainty.items():
-                values: list[list[Any]] = [
-                    [getattr(end, name, None) for end in pair] for pair in ends.values()
-                ]
+                values: Any = [[getattr(end, name, None) for end in pair] for pair in ends.values()]
                 value: Any = getattr(here, name)
                 if value is None or None in chain(*values) or value.is_infinite():
                     assert u is None, (typed, name)
@@ -215,11 +213,9 @@ def test_hostile_uncertainties_come_to_an_end(given: dict[str, str]) -> None:
 
 
 def test_all_that_have_no_uncertainty_are_counted() -> None:
-    solution = solve(m1=1, m2=3, M=10, R="0.5±1e400")
-    without = [
-        name for name, u in solution.uncertainty.items() if u is None and getattr(solution, name) is not None
-    ]
-    assert f"and {len(without) - 3} more: R = 0 m makes no valid scene" in " ".join(solution.notes)
+    s = solve(m1=1, m2=3, M=10, R="0.5±1e400")
+    without = [name for name, u in s.uncertainty.items() if u is None and getattr(s, name) is not None]
+    assert f"and {len(without) - 3} more: R = 0 m makes no valid scene" in " ".join(s.notes)
 
 
 # How they are shown

@@ -85,9 +85,7 @@ def of_contact(scenes: Sequence[Given]) -> Iterator[Values]:
 
 def of_csv(text: str) -> Iterator[Values]:
     for row in csv.DictReader(io.StringIO(text)):
-        yield {
-            name: cell if name == "regime" else float(cell) if cell else None for name, cell in row.items()
-        }
+        yield {x: cell if x == "regime" else float(cell) if cell else None for x, cell in row.items()}
 
 
 def of_batch(scenes: Sequence[Given]) -> Iterator[Values]:

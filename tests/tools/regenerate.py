@@ -29,6 +29,7 @@ CASES = sorted((TOP / "tests" / "cases").glob("*.md"))
 UNSEEN = "[\0-\x09\x0b-\x1f\x7f\xa0\u2009\u2028\ufeff]"
 SCENE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 
+HANDOUT = "atwood solve --m1 1 --m2 3 --M 10 --explain --only a --markdown"
 PICTURES = {
     "contact.svg": f"contact {SCENE}",
     "tensions.svg": "sweep --m1 1 --m2 3 --mu 0.3 --M 0:60:4 --only T1,T2",
@@ -93,9 +94,7 @@ def answered(block: str) -> str:
         pages = stack.enter_context(pages_seen()) if draws else []
         ran = called(shlex.split(found[2]), content)
     out = printed(found[3], ran.out) if found[3] else ran.out
-    shown = re.sub(
-        UNSEEN, lambda unseen: "".join(f"\\x{unit:02x}" for unit in unseen[0].encode()), out + ran.err
-    )
+    shown = re.sub(UNSEEN, lambda seen: "".join(f"\\x{x:02x}" for x in seen[0].encode()), out + ran.err)
     end = "" if not shown or shown.endswith("\n") else "\n"
     words = "".join(f"| {words}\n" for page in pages for words in words_on(page))
     return f"{line}\n{shown}{end}{words}" + (f"[{ran.status}]\n" if ran.status else "")
@@ -118,9 +117,7 @@ KEPT = [
     *(
         Kept(page, command, partial(answered, command), "matplotlib" if page.stem == "pictures" else "")
         for page in CASES
-        for command in re.findall(
-            r"^\$ .*\n(?:(?!\$ |```).*\n)*", page.read_text(encoding="utf-8"), re.MULTILINE
-        )
+        for command in re.findall(r"^\$ .*\n(?:(?!\$ |```).*\n)*", page.read_text("utf-8"), re.MULTILINE)
     ),
     *(
         Kept(page, block, partial(transcript, block), "jq" if "| jq" in block else "")
@@ -128,19 +125,13 @@ KEPT = [
         for block in re.findall(r"```console\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
     ),
     # The scripts call `atwood` and `python3`; both are this interpreter here.
-    *(
-        whole(script.with_suffix(".txt"), f'python3() {{ "$PYTHON" "$@"; }}; . "{script}"')
-        for script in SCRIPTS
-    ),
+    *(whole(one.with_suffix(".txt"), f'python3() {{ "$PYTHON" "$@"; }}; . "{one}"') for one in SCRIPTS),
     # On a busy machine dask says on stderr that a port is taken, or a heartbeat late.
     *(
         whole(engine.with_suffix(".txt"), f'"$PYTHON" "{engine}" 2> /dev/null', needs)
         for engine, needs in ENGINES.items()
     ),
-    whole(
-        EXAMPLES / "handout.md",
-        partial(shown, "atwood solve --m1 1 --m2 3 --M 10 --explain --only a --markdown"),
-    ),
+    whole(EXAMPLES / "handout.md", partial(shown, HANDOUT)),
     *(whole(EXAMPLES / name, partial(picture, words), "matplotlib") for name, words in PICTURES.items()),
 ]
 

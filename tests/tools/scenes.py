@@ -239,9 +239,8 @@ def with_axle(rng: Random, given: Given) -> Given:
         f = g * (h - l) * (1 + rng.choice([-1, 0, 1]) * Fraction(10 ** rng.uniform(-25, -2)))
     if scene.mu and scene.mu < 1 and h > l and rng.random() < 0.3:
         # The verge of a massless pulley: where b (h + l) = (k - 1) l (2 h - b).
-        k_minus_1 = Fraction(
-            Answers(read_scene({**given, "M": "1", "I": None}), 30).settle(lambda m: m.k_minus_1)
-        )
+        of_a_pulley = Answers(read_scene({**given, "M": "1", "I": None}), 30)
+        k_minus_1 = Fraction(of_a_pulley.settle(lambda m: m.k_minus_1))
         near = 1 + Fraction(rng.choice([-1, 1]) * 10 ** rng.uniform(-15, -3))
         f = g * 2 * h * l * k_minus_1 / (h + l + l * k_minus_1) * near
     context = Context(prec=rng.choice([3, 17, 40]), Emin=-5000, Emax=5000)

@@ -8,6 +8,7 @@ least squares with the true variances, of the same quantities).
 import re
 import sys
 from collections.abc import Iterator, Sequence
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -67,11 +68,7 @@ CELLS = [
 ]
 """The designs that decided how degrees of freedom are counted."""
 OTHERS = [
-    *(
-        Design(runs, repeats, 0.05, **more)
-        for runs, repeats in ((3, 5), (6, 3), (8, 5))
-        for more in ERRORS[:2]
-    ),
+    *(Design(*size, 0.05, **more) for size in ((3, 5), (6, 3), (8, 5)) for more in ERRORS[:2]),
     Design(8, 1, 0.05),
     Design(8, 1, 0.01, kind="a"),
     Design(8, 3, 0.01, "vary", kind="a"),
@@ -103,10 +100,7 @@ BESIDE_DELAY: list[tuple[list[str], dict[str, str]]] = [
 ]
 """Quantities that are fitted beside a delay, and what is given."""
 DELAYS = [
-    Design(8, 5, 0.05, "both"),
-    Design(8, 3, 0.05, "drops"),
-    Design(6, 3, 0.05),
-    Design(8, 5, 0.05, "one"),
+    Design(*one) for one in ((8, 5, 0.05, "both"), (8, 3, 0.05, "drops"), (6, 3, 0.05), (8, 5, 0.05, "one"))
 ]
 WRONG = [
     Design(8, 3, 0.05, string=4e-3),
@@ -140,10 +134,9 @@ class Set(NamedTuple):
     values: Any
 
     def runs(self) -> Runs:
-        d, u_mass = self.design, self.design.masses * bool(self.design.stated)
-        return runs_of(
-            d.kind, self.l, self.h, self.drop, self.values, d.stated * d.u, u_mass, d.step or 1e-13
-        )
+        d = self.design
+        errors = d.stated * d.u, d.masses * bool(d.stated), d.step or 1e-13
+        return runs_of(d.kind, self.l, self.h, self.drop, self.values, *errors)
 
     def fit(self, *more: str, given: Conditions | None = None, find: Sequence[str] = USUAL) -> Fitted:
         return fitted(self.runs(), given or given_as(), [*find, *more])
@@ -336,9 +329,8 @@ def causes_named(case: str, sets: int, sums: str) -> Any:
 def report(sets: int) -> Iterator[str]:
     yield f"{sets} sets each; c/f (/delay); 95 % intervals that hold the truth, %; widths over ideal ones"
     yield f"{'what is drawn':54} held      median     90 %       no result  outliers  scatter more  delay seen"
-    drawn_as: list[tuple[Design, tuple[str, ...]]] = [
-        *((one, ()) for one in [*CELLS, *OTHERS, *STATED, *WRONG])
-    ]
+    drawn_as: list[tuple[Design, tuple[str, ...]]]
+    drawn_as = [(one, ()) for one in [*CELLS, *OTHERS, *STATED, *WRONG]]
     drawn_as += [(one, ("delay",)) for one in DELAYS]
     drawn_as += [(one._replace(delay=delay), ()) for one in DELAYS for delay in (0.0, 0.03, 0.15)]
     for design, more in drawn_as:
@@ -348,11 +340,8 @@ def report(sets: int) -> Iterator[str]:
         rest = f"{one.refused:5.1f} {one.accused:9.1f} {one.scatters:9.1f} {one.delayed:9.1f}"
         yield f"{f'{design}{more or str()}':54} {held:9} {median:10} {wide:10} {rest}"
     for runs, repeats in ((8, 1), (8, 3), (5, 3), (15, 3)):
-        design = Design(runs, repeats, 0.05, step=0.01)
-        cases = [(number, kind) for kind in ("time", "mass") for number in (1, 2)]
-        found = (
-            f"{number} {kind}: {blunders_named(design, kind, number, sets):.2f}" for number, kind in cases
-        )
+        design, cases = Design(runs, repeats, 0.05, step=0.01), product(("time", "mass"), (1, 2))
+        found = (f"{case[1]} {case[0]}: {blunders_named(design, *case, sets):.2f}" for case in cases)
         yield f"{runs} x {repeats}, blunders named: {', '.join(found)}"
     for case, (find, _) in enumerate(BESIDE_DELAY):
         share, ends = outliers_beside_delay(case, sets)
