@@ -11,7 +11,6 @@ from decimal import ROUND_UP, Context, Decimal, localcontext
 from fractions import Fraction
 from functools import lru_cache
 from math import inf
-from random import Random
 from typing import Any
 
 import polars as pl
@@ -23,7 +22,7 @@ from atwood_cli.solver.quantities import NAMES
 
 from .conftest import many
 from .tools import oracle
-from .tools.doors import DOUBLES, TEXTS, Door, of_solutions, solve_any, within_promise
+from .tools.doors import DOUBLES, TEXTS, Door, solve_any, within_promise
 from .tools.regenerate import CASES, KEPT, essence
 from .tools.scenes import DANGERS, FAMILIES, ON_AN_AXLE, Given, as_doubles, scenes
 
@@ -84,19 +83,6 @@ def test_values_of_doubles(family: str) -> None:
         one = {name: getattr(solve_any(**given), name) for name in BOUNDS}
         found |= {name: value and Fraction(value) for name, value in one.items() if value not in (0, inf)}
     for door in DOUBLES.values():
-        check(door, tried, truths)
-
-
-def test_whole_numbers_have_one_answer_at_every_door() -> None:
-    """They are the same as texts and as doubles, gravity is exact where it is not given, and 1000 digits are right."""
-    rng = Random(43)
-    tried: list[Given] = [
-        dict(zip(("m1", "m2", "M"), map(str, rng.sample(range(1, 21), 3)), strict=True))
-        | {"mu": rng.choice(["0.25", "0.5", "2"])}
-        for _ in range(many(200))
-    ]
-    truths = [truth(given) for given in tried]
-    for door in (*TEXTS.values(), *DOUBLES.values(), Door(of_solutions(1000), 1000, every=10)):
         check(door, tried, truths)
 
 

@@ -15,7 +15,6 @@ import pytest
 
 from atwood_cli import SceneError, solve
 from atwood_cli.numbers.digits import rounding_to_uncertainty, to_digits, with_uncertainty
-from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.decisions import Decisions
 from atwood_cli.solver.scene import InTerms
@@ -147,30 +146,6 @@ def test_a_given_mass_and_friction_stop_at_0_and_what_is_found_goes_on() -> None
     assert u > found.pulley_mass
 
 
-MOVABLE = """
-m1=1 m2=2 M=5 mu=0.3 g=9.8 inertia=0.5 R=0.3 drop=1.7
-m1=1 m2=3 mu=0.2 g=9.8 inertia=0.5
-m1=3 m2=1 M=90 mu=0.2 mu_k=0.1 g=9.8 inertia=0.5 R=0.3 drop=1.7
-m1=1 m2=2 M=5 mu=0.4 g=9.8 axle=20
-m1=1 m2=3 M=50 mu=0.1 g=9.8 axle=1
-""".strip().splitlines()
-
-
-@pytest.mark.parametrize("wrap", ["180", "175"])
-@pytest.mark.parametrize("words", [*MOVABLE, *MEASURED])
-def test_what_does_not_depend_on_an_input_is_certain(words: str, wrap: str) -> None:
-    """Was searched for in ever more digits: friction_force_max does not depend on the wrap."""
-    given = inputs(f"{words} wrap={wrap}")
-    for x in given:
-        answers = read_answers({**given, x: f"{given[x]}±0.0001"}, None)
-        ends = [
-            read_answers({**given, x: str(Decimal(given[x]) + step)}, 30) for step in (0, Decimal("1e-4"))
-        ]
-        for name in answers.names[1:]:
-            if (u := answers.uncertainty(name)) is not None:
-                assert (u > 0) == (ends[0][name] != ends[1][name]), (x, name)
-
-
 def test_an_infinite_value_may_have_a_finite_uncertainty() -> None:
     solution = solve(m1="1e308", m2="(1.100±0.001)e308", M="1e308")
     assert solution.tension_1 == inf
@@ -191,15 +166,14 @@ def test_at_most_15_digits_and_none_below_1e_30_of_the_value(u: str) -> None:
     assert solve(**given, digits=3).uncertainty["acceleration"] == to_digits(3)(found)
 
 
-HOSTILE = {"m1": "1e500", "m2": "3e500", "M": "1e-500", "mu": "1e-500", "R": "1e500", "g": "1e500"}
+FAR = {"m1": "1e500", "m2": "3e500", "M": "1e-500", "mu": "1e-500", "R": "1e500", "g": "1e500"}
 
 
 @pytest.mark.parametrize(
     "given",
     [
         {"m1": "0.115", "m2": "9.9766", "mu": "0.104438", "M": "0±0.00508", "mu_k": "0±0.0048"},
-        {x: f"{v}±1e-500" for x, v in {**HOSTILE, "inertia": "1e-500", "wrap": "1e-500"}.items()},
-        {x: f"{v}±1e500" for x, v in {**HOSTILE, "inertia": "1e500", "wrap": "1e500"}.items()},
+        *({x: f"{v}±{u}" for x, v in {**FAR, "inertia": u, "wrap": u}.items()} for u in ("1e-500", "1e500")),
     ],
 )
 def test_hostile_uncertainties_come_to_an_end(given: dict[str, str]) -> None:

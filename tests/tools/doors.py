@@ -133,7 +133,7 @@ TEXTS = {
     "doubles": Door(of_solutions(None)),
     "6 digits": Door(of_solutions(6), 6, every=4),
     "40 digits": Door(of_solutions(40), 40, every=2),
-    **{f"{digits} digits": Door(of_solutions(digits), digits, every=8) for digits in (1, 17, 200)},
+    **{f"{digits} digits": Door(of_solutions(digits), digits, every=8) for digits in (1, 17, 1000)},
     "JSON": Door(of_json(), every=16, on_paper=True),
     "JSON, 30 digits": Door(of_json("--digits", "30"), 30, every=16, on_paper=True),
     "a sweep": Door(of_sweeps, every=16, on_paper=True),
