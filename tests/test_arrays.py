@@ -226,6 +226,7 @@ def test_missing_values_are_counted(accuracy: Any, chunk: int, monkeypatch: pyte
     numbers = {"m1": (1, 2, 0), "m2": (1, 2, 3), "M": (None, 0, 1, 100, inf), "mu": (None, 0, 0.1, 1)}
     numbers |= {"R": (None, 1), "wrap": (90, 180, 360, 540), "axle": (*[None] * 4, 0, 10)}
     given: list[Any] = [{name: rng.choice(some) for name, some in numbers.items()} for _ in range(60)]
+    given += [given[0] | {"m1": 1, "m2": 3, "M": 1e300, "mu": 0.9}] * 5  # alike, and solved one by one
     whole: dict[str, Any] = {name: [row[name] for row in given] for name in numbers}
     results, reasons = arrays.solve_and_count(whole, accuracy, NAMES)
     assert reasons == reasons_of([row for row in given if row["m1"] or row["mu"] is None])
@@ -256,12 +257,6 @@ def test_rows_that_differ_in_one_input_are_not_alike(name: str) -> None:
     results = solve_arrays(**given, quantities=["friction_force_max", "torque"], accuracy="exact")
     for i, row in enumerate((usual, usual | {name: usual[name] * 0.75}, usual)):
         assert_is_solve(results, i, row, "exact")
-
-
-def test_missing_values_of_rows_that_are_alike_are_counted_for_each() -> None:
-    row = {"m1": 1.0, "m2": 3.0, "M": 1e300, "mu": 0.9}
-    given = {name: [value] * 5 for name, value in row.items()}
-    assert arrays.solve_and_count(given, "exact", NAMES)[1] == reasons_of([row] * 5)
 
 
 def test_a_quantity_without_a_program_is_not_traced_for_long() -> None:

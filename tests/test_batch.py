@@ -187,10 +187,8 @@ def test_what_is_wrong_with_rows_that_are_alike_is_found_once(batch: Batch) -> N
 
 def test_a_key_that_is_refused_later_says_where(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     """A slow pipe had its first row answered, and the table refused as if it were not."""
-    rows, why = (
-        '{"m1":1,"m2":3}\n{"m1":1,"m2":3,"error":"x"}\n',
-        "column 'error' has the name of a result; rename it",
-    )
+    rows = '{"m1":1,"m2":3}\n{"m1":1,"m2":3,"error":"x"}\n'
+    why = "column 'error' has the name of a result; rename it"
     assert batch(rows, "--only a", "in.ndjson") == (1, "", f"atwood: cannot read IN: {why}\n")
     monkeypatch.setattr(sources, "BLOCK_BYTES", 8)
     answered = '{"m1":1,"m2":3,"acceleration":4.903325,"error":null}\n'

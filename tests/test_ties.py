@@ -159,17 +159,14 @@ def test_a_tie_in_an_array_stops_no_other_row() -> None:
     assert np.isnan(found[1])  # friction to spare
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "--m1 0.0275 --m2 3e-53 --M 1e-3",
-        "--m1 1e-49 --m2 3 --M 10",
-        "--m1 1 --m2 1 --wrap 60 --digits 6",
-        "--m1 1 --m2 2 --M inf --wrap 60 --points 2 --digits 5",
-        "--m1 1 --m2 2 --mu 0.1 --M inf --wrap 120 --g 1.25 --points 2 --digits 1",
-        "--m1 1 --m2 1e499 --M inf --g 2.5 --points 40 --digits 1",
-    ],
-)
+RAN_ON = """
+--m1 0.0275 --m2 3e-53 --M 1e-3|--m1 1e-49 --m2 3 --M 10|--m1 1 --m2 1 --wrap 60 --digits 6
+--m1 1 --m2 2 --M inf --wrap 60 --points 2 --digits 5|--m1 1 --m2 1e499 --M inf --g 2.5 --points 40 --digits 1
+--m1 1 --m2 2 --mu 0.1 --M inf --wrap 120 --g 1.25 --points 2 --digits 1
+"""
+
+
+@pytest.mark.parametrize("words", RAN_ON.strip().replace("|", "\n").splitlines())
 def test_what_ran_for_a_minute_ends(words: str, atwood: Atwood) -> None:
     ran = atwood("contact", *words.split())
     assert (ran.status, ran.err) == (0, "")
