@@ -240,7 +240,7 @@ def _draw_masses(axes: "Axes", answers: Answers, lengths: Mapping[str, float]) -
             centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
             way = -1j * x * (1 if acceleration > 0 else -1) * ACCELERATION
             _draw_arc(axes, centre + way * np.array([-0.5, 0.5]), PURPLE, "white")
-    words = typeset(f"a = {_number(abs(acceleration))} m/s²") if acceleration else "a = 0"
+    words = typeset(f"a = {_number(acceleration.copy_abs())} m/s²") if acceleration else "a = 0"
     height = -STRING - LARGER_SIDE - 0.17 - (LONGEST if len(words) > BETWEEN_WEIGHTS else 0)
     axes.text(0, height, words, color=PURPLE, ha="center", va="center")
     axes.update_datalim([(0, height - 0.1)])
