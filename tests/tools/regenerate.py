@@ -141,7 +141,7 @@ def essence(text: str) -> object:
     if "<svg" in text:
         return labels(text)
     if "atwood fit" in text:
-        text = re.sub(r"\d\.\d{12,}", lambda number: f"{float(number[0]):.10g}", text)
+        text = re.sub(r"\d+\.\d{12,}", lambda number: f"{float(number[0]):.10g}", text)
     return text.replace("argument(s)", "arguments")  # as typer words it, by its version
 
 
