@@ -18,7 +18,7 @@ from ..solver import arc
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
 from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_picture, page, typeset, write_beside
-from .text import Picture, in_unit_typed, inputs_in_words
+from .text import Picture, in_unit_typed, inputs_with_effect
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,7 +67,7 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
         )
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
-    given = inputs_in_words(decided.scene, answers.uncertain)
+    given = inputs_with_effect(decided.scene, answers.uncertain)
     above = [", ".join(given.values()), unmarked(verdict(answers))]
     panels = 2 if curves else 1
     with page(picture, above, " ".join(below), panels) as figure:

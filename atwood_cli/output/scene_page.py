@@ -13,7 +13,7 @@ from ..solver.answers import Answers
 from ..solver.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..solver.scene import with_unit
 from .files import printable
-from .text import IN_MARKDOWN, VERSION, cell, inputs_in_words, scene_record, terms_record
+from .text import IN_MARKDOWN, VERSION, cell, inputs_with_effect, scene_record, terms_record
 
 if TYPE_CHECKING:
     from .page import Page
@@ -127,7 +127,7 @@ def print_table(
 
 def _print_head(page: "Page", answers: Answers, measured: str = "") -> None:
     """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
-    given = inputs_in_words(answers.decided.scene, answers.uncertain)
+    given = inputs_with_effect(answers.decided.scene, answers.uncertain)
     page.say(", ".join(given.values()))
     if measured:
         page.say(measured, style="bold")
@@ -201,7 +201,7 @@ def print_steps(answers: Answers, names: Sequence[str]) -> None:
     from .page import Page
     from .typeset import as_markdown, as_text
 
-    given = inputs_in_words(answers.decided.scene).values()
+    given = inputs_with_effect(answers.decided.scene).values()
     explanation = explain(answers, names)
     if IN_MARKDOWN.get():
         for line in as_markdown(given, explanation):

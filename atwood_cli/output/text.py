@@ -15,7 +15,8 @@ from typing import Any, NamedTuple, TextIO
 from ..numbers.digits import Rounding, as_typed, exact_or_rounded, format_number, is_infinite, to_double
 from ..numbers.rational import Typed
 from ..numbers.text import LONGEST_NAME, shortened
-from ..solver.scene import INPUTS, MEASURED, Scene, parameter_of, with_unit
+from ..solver.decisions import Decisions
+from ..solver.scene import INERTIA_FACTORS, INPUTS, MEASURED, Scene, parameter_of, with_unit
 from .files import Stdout, printable, stdout_into
 
 
@@ -291,3 +292,14 @@ def inputs_in_words(scene: Scene, uncertain: Mapping[str, Fraction] = {}) -> dic
         if value is not None:
             parts[name] = f"{name} = {words}"
     return parts
+
+
+def inputs_with_effect(
+    scene: Scene, uncertain: Mapping[str, Fraction] = {}, ranges: Mapping[str, str] = {}
+) -> dict[str, str]:
+    """Say each input, and ``ranges``, but not the usual shape of a pulley that has no mass or is locked."""
+    words, decided = inputs_in_words(scene, uncertain) | ranges, Decisions(scene)
+    has_usual_shape = scene.inertia == Fraction(INERTIA_FACTORS["disk"])
+    if has_usual_shape and (decided.locked or decided.pulley_mass == 0) and not {"M", "inertia"} & {*ranges}:
+        del words["inertia"]
+    return words

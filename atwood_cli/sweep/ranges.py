@@ -27,7 +27,7 @@ from ..numbers.digits import (
 )
 from ..numbers.interval import decimal_context
 from ..numbers.text import in_quotes
-from ..output.text import inputs_in_words
+from ..output.text import inputs_with_effect
 from ..reading.inputs import read_exactly, read_value, read_whole
 from ..reading.units import MAX_DIGITS, read_number
 from ..solver.answers import Answers
@@ -142,7 +142,7 @@ class Sweep(NamedTuple):
     def inputs(self) -> dict[str, str]:
         """Return the inputs, and the ranges, in words."""
         ranges = {range_.name: range_.words for range_ in self.ranges}
-        return inputs_in_words(self.scene) | ranges
+        return inputs_with_effect(self.scene, ranges=ranges)
 
     @property
     def along(self) -> Range:
