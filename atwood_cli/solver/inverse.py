@@ -105,6 +105,8 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         case "axle" if M == inf:
             return "says nothing about the axle of a locked pulley; leave M out"
+        case "axle" if decided.sign == 0:
+            return "says nothing about the axle: equal masses that begin at rest stay there on any"
         case "mu_k" if M != inf and (mu is None or M is I is None):
             return "finds mu_k only if the string slips: give M = inf, or M and mu"
         case "M" if I is not None:
@@ -115,7 +117,7 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
                 f"leaves nothing to find if both {pulley} and g are given; leave one of them out,"
                 " or ask for the axle's friction: --find axle"
             )
-        case "M" | "g" | "mu_k" | "axle" if decided.sign == 0:
+        case "M" | "g" | "mu_k" if decided.sign == 0:
             return f"says nothing about equal masses, which rest on any pulley; {IF_IT_SLOWS_DOWN}"
         case "mu_k" if not decided.light:
             return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
