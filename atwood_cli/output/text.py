@@ -298,7 +298,7 @@ def inputs_with_effect(
     scene: Scene, uncertain: Mapping[str, Fraction] = {}, ranges: Mapping[str, str] = {}
 ) -> dict[str, str]:
     """Say each input, and ``ranges``, but not the usual shape of a pulley that has no mass or is locked."""
-    words, decided = inputs_in_words(scene, uncertain) | ranges, Decisions(scene)
+    words, decided = {**inputs_in_words(scene, uncertain), **ranges}, Decisions(scene)
     has_usual_shape = scene.inertia == Fraction(INERTIA_FACTORS["disk"])
     if has_usual_shape and (decided.locked or decided.pulley_mass == 0) and not {"M", "inertia"} & {*ranges}:
         del words["inertia"]
