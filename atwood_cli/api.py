@@ -128,6 +128,10 @@ class Solution(Generic[T]):
             object.__setattr__(self, name, value)
             return value
 
+    def __dir__(self) -> list[str]:
+        """Return all names, as a field has none in Python before it is read."""
+        return [*object.__dir__(self), *self.__dataclass_fields__]
+
     def to_dict(self) -> dict[str, Any]:
         """Return the record that ``--json`` prints, for `json`: Decimals are text, infinite values None."""
         from .output.scene_page import record

@@ -41,6 +41,7 @@ RULES: list[tuple[str, list[Any], str]] = [
     ("digits", [0, -1, 1001, 2.5, "", "six", "99999", True], "must be a whole number from 1 to 1000"),
     ("axle", [(1, "N")], TYPES),
     ("R", [Angle(1)], TYPES),
+    ("R", [[1, 2], np.ones(2)], f"{TYPES}; for many see solve_arrays"),
     ("m1", [True, b"1", 1j, np.timedelta64(1, "s"), np.datetime64("2020")], TYPES),
 ]
 """By parameter, values that it must not have, and why; what can be typed stands in cases/inputs.md."""

@@ -27,7 +27,7 @@ REMARKS = {
     "M": "; inf locks it",
     "mu_k": "; mu if not given",
     "g": ", or a planet, moon or pluto; 9.80665 if not given",
-    "inertia": ", or disk, hoop, ring, sphere, shell; 0.5 if not given",
+    "inertia": ", or disk, cylinder, hoop, ring, sphere, shell; 0.5 if not given",
     "I": ", instead of inertia; needs R",
     "wrap": ": degrees, 3rad, pi/2, 2.5turn; 180 if not given",
     "axle": ", 15mN, or a torque, 0.4mNm (needs R)",
@@ -172,7 +172,7 @@ FIGURE: dict[str, Any] = {
     ],
     "bare": Annotated[bool, option("Files", "--bare", help="With --figure: no title, as for a report.")],
     "symbols": Annotated[
-        bool, option("Files", "--symbols", help="With --figure: symbols to fill in, and no numbers.")
+        bool, option("Files", "--symbols", help="With --figure: symbols without their values, to fill in.")
     ],
 }
 Expect = Annotated[

@@ -20,7 +20,7 @@ from ..reading.names import NAMES_BY_SYMBOL, read_name
 from ..reading.units import GRAVITY, Malformed, TypedNumber, read_number
 from ..solver.answers import TOO_SMALL, Answers
 from ..solver.decisions import REGIME_ASSUMED
-from ..solver.quantities import QUANTITIES, REGIMES, Undetermined
+from ..solver.quantities import NO_NEED, QUANTITIES, REGIMES, Undetermined
 from ..solver.scene import INPUTS, MEASURED, Angle, SceneError, with_unit
 from .messages import unmarked
 
@@ -39,6 +39,10 @@ DIMENSIONS = {
     **{"N": "force", "N m": "torque"},
 }
 """The dimension of a quantity, by its unit."""
+
+
+SIGNED = ("acceleration", "torque", "rim_acceleration", "angular_acceleration")
+"""The quantities with the sign of the motion."""
 
 
 class Condition(NamedTuple):
@@ -95,7 +99,9 @@ def _holds(answers: Answers, expected: Condition) -> bool:
             )
             return bool(_above(answers, expected.name, most) <= 0 <= _above(answers, expected.name, least))
         return bool(OPERATORS[expected.sign](_above(answers, expected.name, number), 0))
-    except (Undetermined, ArithmeticError):
+    except Undetermined as undetermined:
+        return str(undetermined) == NO_NEED and ">" in expected.sign
+    except ArithmeticError:
         return False
 
 
@@ -103,6 +109,8 @@ def _instead(answers: Answers, expected: Condition) -> str:
     """Say the regime, or the value of the quantity, or why it has none."""
     if expected.name in REGIMES:
         return f"it is {answers.decided.regime}"
+    if expected.name in INPUTS and expected.name != answers.decided.motion.finds:
+        return f"{expected.name} is an input, and no measured motion finds it"
     value, reason = answers.answer(expected.name)
     if value is None or reason == TOO_SMALL:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
@@ -117,6 +125,8 @@ def _instead(answers: Answers, expected: Condition) -> str:
         shown = "too large to be written out" if is_infinite(value) else format_number(value)
     is_exact = expected.sign == "==" and given and not expected.number.uncertainty
     hint = "; a rounded number takes its uncertainty, as 'a == 2.17926(1)' or 2.179±0.001" if is_exact else ""
+    if expected.name in SIGNED and value < 0 < expected.number.value:
+        hint = "; it is positive when m2 descends"
     return f"it is {with_unit(shown, QUANTITIES[expected.name].unit)}{hint}"
 
 

@@ -124,6 +124,7 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
     friction, normal = along_the_arc(physics.friction_vector), along_the_arc(physics.normal_vector)
     forces = {"friction": vector(friction), "normal": vector(normal)}
     ends = vector(lambda m: m.resultant_vector)
+    magnitude = {"magnitude": answers.settle(lambda m: m.resultant_magnitude)}
 
     def total(axis: str, place: Literal[0, 1]) -> Rounded:
         """Return a component of the sum, rounded once.
@@ -142,7 +143,12 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
         ),
         "ends": answers.settle(lambda m: m.tension_difference * _radius(m)),
     }
-    return {**forces, "sum": {"x": total("x", 0), "y": total("y", 1)}, "resultant": ends, "torque": torque}
+    return {
+        **forces,
+        "sum": {"x": total("x", 0), "y": total("y", 1)},
+        "resultant": ends | magnitude,
+        "torque": torque,
+    }
 
 
 def _radius(machine: Machine[Any]) -> Any:

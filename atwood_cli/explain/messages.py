@@ -46,7 +46,37 @@ def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     without = [
         x for x, answer in by_name.items() if answer.value is not None and answers.uncertainty(x) is None
     ]
+    sentences += in_typed_units(answers, names)
     return [*sentences, *answers.doubts(), *map(unmarked, answers.open_ended(without))]
+
+
+LIMITS = {
+    **dict.fromkeys(("critical_heavier_mass", "critical_lighter_mass", "least_heavier_mass"), MASSES),
+    "least_wrap": ("wrap",),
+}
+"""The limits of inputs, and those inputs."""
+USUAL_UNITS = ("", "kg", "g", "mg", "ug", "t", "deg", "°", "rad")
+
+
+def in_typed_units(answers: Answers, names: Sequence[str]) -> list[str]:
+    """Say limits, as far as they are among the names, in the unit of an input that has an unusual one."""
+    sentences = list[str]()
+    for name in names:
+        by_input = (_in_unit_of(answers, name, x) for x in LIMITS.get(name, ()) if answers[name])
+        sentences += [*filter(None, by_input)][:1]
+    return sentences
+
+
+def _in_unit_of(answers: Answers, limit: str, x: str) -> str:
+    """Say a limit in the unit of an input, "" if that is a usual one."""
+    scene, is_weight = answers.decided.scene, x in dict(answers.decided.scene.terms)
+    number = scene.number_of(x)
+    unit: str = getattr(number, "in_unit", "") or (scene.given_as(x).unit if is_weight else "")
+    if unit in USUAL_UNITS:
+        return ""
+    share = scene.in_terms_of(x, Fraction(1)) / getattr(number, "factor", 1)
+    value = answers.to_six_digits.settle(lambda m: getattr(m, limit) * m.ar.number(share))
+    return f"{limit} is {'a weight of ' if is_weight else ''}{with_unit(format_number(value), unit)}."
 
 
 def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
@@ -143,6 +173,8 @@ def _slips(answers: Answers) -> str:
     return f"{slips}: {mu} is below the {_enough(answers)} needed to hold the string{kinetic}."
 
 
+LOW_GRAVITY = 9.7
+"""Less than this (m/s²) is hardly gravity on Earth, where friction can make masses as slow."""
 LIKE_RADIANS = (0.3, 12.6)
 """The range of degrees that are probably radians, or turns: a short arc, but up to two turns in radians."""
 
@@ -156,11 +188,9 @@ def remarks(answers: Answers) -> list[str]:
             f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
-    wrap = decided.scene.wrap
-    if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
-        typed = as_typed(wrap.number)
-        sentences.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
-    sentences += _on_terms(answers)
+    sentences += [*_on_weights(answers), *on_units(answers)]
+    if decided.motion.finds == "g" and decided.scene.g < LOW_GRAVITY and not decided.has_axle_friction:
+        sentences.append("If `g` is that of the Earth, the axle has friction: find it with `--find axle`.")
     mu_k = decided.scene.mu_k
     if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:
         sentences.append("`mu_k` has no effect here, as the string does not slip.")
@@ -185,22 +215,36 @@ def remarks(answers: Answers) -> list[str]:
     return sentences
 
 
-def _on_terms(answers: Answers) -> list[str]:
-    """Say the masses of weights, that a mass beside one is none, and which way a mass is taken to move."""
+def _short(answers: Answers, number: Fraction) -> str:
+    return format_number(strip_zeros(_beside(answers, None)(number)))
 
-    def short(number: Fraction) -> str:
-        return format_number(strip_zeros(_beside(answers, None)(number)))
 
+def on_units(answers: Answers) -> list[str]:
+    """Say of numbers without a unit what they may have been meant to be: radians, turns, or a weight."""
+    scene, wrap, sentences = answers.decided.scene, answers.decided.scene.wrap, []
+    if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
+        typed = as_typed(wrap.number)
+        sentences.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
+    weights = [x for x, _ in scene.terms if x in MASSES]
+    for x in MASSES:
+        mass = getattr(scene, x)
+        has_unit = x in weights or bool(getattr(mass, "in_unit", ""))
+        if weights and mass and not has_unit and x != scene.motion.finds:
+            sentences.append(f"`{x}` is a mass of {_short(answers, mass)} kg; for a weight give its unit.")
+    return sentences
+
+
+def _on_weights(answers: Answers) -> list[str]:
+    """Say the masses of weights, and which way a mass is taken to move."""
     scene, motion = answers.decided.scene, answers.decided.motion
-    weights = {x: short(given.number) for x, given in scene.terms if x in MASSES and given.number}
-    each = [f"`{x}` is a weight of {weights[x]} N, the mass {short(getattr(scene, x))} kg" for x in weights]
-    of = f" of {min(weights.values())} N" if len(weights) == 1 else ""
-    pull = f"; a pull{of} that is no weight accelerates differently" if answers["acceleration"] != 0 else ""
-    beside = [x for x in MASSES if weights and x not in (*weights, motion.finds) and getattr(scene, x)]
-    sentences = [f"{', and '.join(each)}{pull}."] if weights else []
-    sentences += [
-        f"`{x}` is a mass of {short(getattr(scene, x))} kg; for a weight give its unit." for x in beside
+    weights = {x: _short(answers, given.number) for x, given in scene.terms if x in MASSES and given.number}
+    each = [
+        f"`{x}` is a weight of {weights[x]} N, the mass {_short(answers, getattr(scene, x))} kg"
+        for x in weights
     ]
+    of = f" of {min(weights.values())} N" if len(weights) == 1 else ""
+    pull = f"; a pull{of} by hand gives another acceleration" if answers["acceleration"] != 0 else ""
+    sentences = [f"{', and '.join(each)}{pull}."] if weights else []
     if motion.finds in MASSES and motion.a is None and 0 not in (scene.m1, scene.m2):
         name = "speed" if motion.drop is None else "drop"
         falls = f"is taken to fall; if it rises, give a `{name}` below 0"

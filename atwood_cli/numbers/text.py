@@ -33,7 +33,8 @@ def sentence(message: str, in_python: bool = False) -> str:
 
 def in_quotes(value: object) -> str:
     """Return what was typed or read, as a message shows it."""
-    return shortened(repr(str(value) if isinstance(value, str) else value))  # not np.str_("hoop")
+    words = repr(str(value)) if isinstance(value, str) else " ".join(repr(value).split())
+    return shortened(words)  # not np.str_("hoop")
 
 
 def counted(count: int, thing: str) -> str:

@@ -139,7 +139,8 @@ def _draw_pulley(axes: "Axes", answers: Answers, phi: float) -> None:
         _draw_arc(axes, ROTATION_AT * (above[::-1] if answers.decided.slows_down else above), PURPLE, "white")
     if friction := _axle_friction(answers):
         _draw_arc(axes, AXLE_AT * above.conj(), ORANGE, ORANGE)
-        axes.text(0, -0.42, f"axle friction\n= {friction} N", ha="center", va="center", size=8, color=ORANGE)
+        words = f"axle friction\nat the rim = {friction} N"
+        axes.text(0, -0.42, words, ha="center", va="center", size=8, color=ORANGE)
 
 
 def _draw_arc(axes: "Axes", path: Any, colour: str, head: str) -> None:

@@ -89,10 +89,11 @@ def main_quantities(answers: Answers) -> list[str]:
         "torque": scene.R is not None,
         "rim_acceleration": decided.regime == "slip",
         "angular_acceleration": scene.R is not None,
-        "critical_pulley_mass": has_mu,
+        "critical_pulley_mass": has_mu and not decided.locked,
         "critical_heavier_mass": has_mu and decided.pulley_known,
+        "critical_lighter_mass": has_mu and decided.locked,
         "safety_factor": has_mu and decided.pulley_known and not decided.tensions_equal,
-        "least_wrap": has_mu and not scene.wrap.is_half_turn,
+        "least_wrap": has_mu and (decided.locked or not scene.wrap.is_half_turn),
     }
     return [name for name in answers.names[1:] if also.get(name, name in MAIN or name in MEASURED_NAMES)]
 
@@ -261,6 +262,7 @@ def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
     force_rows = list(zip(forces, xs, ys, strict=True))
     heads = ["Force of the string on the pulley", "x towards m1 (N)", "y upwards (N)"]
     page.table(heads, [force_rows[:2], force_rows[2:3], force_rows[3:]])
+    page.say(f"The magnitude of the sum is {cell(arc.balance['resultant']['magnitude'])} N.")
     torques = aligned(map(cell, arc.balance["torque"].values()))
     head, ends = ("Torque on the pulley / R (N)", "T2 - T1")
     if answers.decided.scene.R is not None:

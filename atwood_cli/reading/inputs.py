@@ -163,7 +163,7 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
 
 
 NO_UNCERTAINTY = "has an uncertainty, which only solve and fit take; give the value alone"
-THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}[^,]*", re.ASCII)
+THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}(?!\d)[^,]*", re.ASCII)
 """A number with one comma before three digits; with more commas it may be a list."""
 NUMBER_SIGNS = "±µμ°·²⁻π"
 """The characters beyond ASCII that numbers and their units may have."""
@@ -172,8 +172,12 @@ NUMBER_SIGNS = "±µμ°·²⁻π"
 def _not_a_number(parameter: Parameter, word: str) -> str:
     if not word:
         return "is empty; give a value, or leave it out"
+    if parameter.may_be_infinite and word.lower() in ("infinity", "+inf", "∞"):
+        return "is not a number; write inf for a locked pulley"
     if word.lower() in ("nan", "inf", "+inf", "-inf", "infinity"):
         return parameter.domain
+    if re.fullmatch(r"[+-]?\d{1,3}(\.\d{3})+,\d.*", word):  # points between thousands
+        word = word.replace(".", "")
     meant = [word.replace(",", sign) for sign in ("", ".") if sign or THOUSANDS.fullmatch(word)]
     numbers = [shortened(number) for number in meant if NUMBER.fullmatch(number)]
     if "," in word and numbers:
@@ -199,7 +203,9 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
 def _exact_number(name: str, given: object) -> Fraction | float:
     is_duration = getattr(getattr(given, "dtype", None), "kind", "") == "m"  # NumPy's pass for integers
     if isinstance(given, bool) or is_duration or not isinstance(given, Real | Decimal):
-        raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")
+        many = isinstance(given, list) or bool(getattr(given, "shape", False))
+        rule = "must be text or a number (str, int, float, Decimal, Fraction)"
+        raise SceneError(name, given, f"{rule}; for many see solve_arrays" if many else rule)
     if isinstance(given, Decimal) and given.is_finite() and given:
         longest = max(given.adjusted(), -int(given.as_tuple().exponent))
         if longest > MAX_MAGNITUDE:  # it must not become a huge integer

@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from ..numbers.text import nearest
-from ..solver.quantities import NAMES, QUANTITIES, STANDARD
+from ..solver.quantities import MEASURED_NAMES, NAMES, QUANTITIES, STANDARD
 from ..solver.scene import INPUTS, SceneError
 
 SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
@@ -51,7 +51,9 @@ def read_name(
         return name
     known_names = "see atwood quantities" if kind == "quantity" else f"there are {', '.join(known)}"
     a_kind = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
-    if word in INPUTS:
+    if kind == "quantity" and word in MEASURED_NAMES and word not in INPUTS:
+        raise SceneError(parameter, word, "follows from a measured motion, which only solve takes")
+    if word in INPUTS and not kind.startswith("input"):
         raise SceneError(parameter, word, f"is an input, not {a_kind}; {known_names}")
     small = _plain(word).lower()
     alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]

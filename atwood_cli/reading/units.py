@@ -90,10 +90,11 @@ WORDS = {
     "g": "gram grams gramm gramme grammes gramos gramas gr gm gms г",
     "m": "meter meters metre metres м",
     "cm": "centimeters centimetres см",
+    "t": "tonne tonnes",
     "s": "sec second seconds sek seg сек с",
     "N": "newton newtons Н",
     **{"mg": "мг", "mm": "мм", "ms": "мс", "min": "мин", "mN": "мН", "m/s2": "м/с2", "cm/s2": "см/с2"},
-    **{"in": "inch inches", "ft": "foot feet", "lb": "pound pounds"},
+    **{"in": "inch inches", "ft": "foot feet", "lb": "pound pounds lbm"},
 }
 """Other words for units."""
 _SYMBOLS |= {word: symbol for symbol, words in WORDS.items() for word in words.split()}
@@ -180,7 +181,7 @@ def _split_uncertainty(text: str) -> tuple[str, str]:
     if match and match[4].endswith(PERCENT):
         return match[1] + match[2], match[3] + PERCENT
     if not match or match[2] not in ("", match[4]):
-        if re.search(r"[^\W\d] ?\(|[*/^] ?\(", text):  # a function, as sin(20), or an expression
+        if re.search(r"[^\W\d] ?\(|[*/^] ?\(|\) ?[*/^]", text):  # a function, as sin(20), or an expression
             raise NotANumber(NOT_A_NUMBER)
         raise Malformed(NOT_UNCERTAIN)
     return match[1] + match[4], match[3] + match[4]
@@ -222,7 +223,7 @@ def _value_and_unit(text: str, dimension: str | None) -> tuple[Fraction, str]:
 
 def _typed(value: Fraction, number: str, unit: str = "", factor: Fraction = ONE) -> Fraction:
     """Return a number, which remembers how it was typed if that differs from what it is in SI units."""
-    if "/" not in number and factor == 1:
+    if "/" not in number and not unit:
         return value
     typed = Typed(value)
     typed.quotient = number if "/" in number and len(number) <= LONGEST_QUOTIENT else ""

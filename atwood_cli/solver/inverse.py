@@ -161,7 +161,9 @@ def found_inputs(scene: Scene) -> dict[str, Any]:
     c, f, b = decided.rim_mass, decided.axle_friction, decided.axle_mass
     a = scene.motion.acceleration({"m2": 1, "m1": -1}.get(finds) or decided.sign)
     if finds != "g" and (a >= g or (finds == "axle" and -a >= g)):
-        raise Undetermined(f"must be slower than free fall, {as_typed(g)} m/s²")
+        fall = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(abs(a))))
+        gives = f"gives {fall} m/s², and " if scene.motion.a is None else ""
+        raise Undetermined(f"{gives}must be slower than free fall, {as_typed(g)} m/s²")
     if finds in MASSES:
         known = m1 if finds == "m2" else m2
         if a > 0:

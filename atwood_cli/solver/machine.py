@@ -307,11 +307,14 @@ class Machine(Generic[N]):
         mu = self.friction_mu
         if self.ar.is_zero(mu):
             return self.ar.number(0)
+        return physics.friction_magnitude(mu, self.resultant_magnitude, self.ar.sqrt)
+
+    @property
+    def resultant_magnitude(self) -> N:
+        """Magnitude of the force (N) that T1 and T2 would exert on the pulley."""
         if self.decided.ends_hang_down:
-            force = self.light_tension + self.heavy_tension  # (20)
-        else:
-            force = self._resultant(self.half_sine)
-        return physics.friction_magnitude(mu, force, self.ar.sqrt)
+            return self.light_tension + self.heavy_tension  # (20)
+        return self._resultant(self.half_sine)
 
     def _resultant(self, sin_half: N) -> N:
         """Return the force (N) of both tensions on an arc, by the sine of its half."""

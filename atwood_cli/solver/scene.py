@@ -96,7 +96,8 @@ else:
 Given = str | int | float | Decimal | Fraction | Angle | OfNumPy
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
 
-INERTIA_FACTORS = {"disk": "1/2", "hoop": "1", "ring": "1", "sphere": "2/5", "shell": "2/3"}
+SHAPES = "disk cylinder hoop ring sphere shell"
+INERTIA_FACTORS = dict(zip(SHAPES.split(), "1/2 1/2 1 1 2/5 2/3".split(), strict=True))
 
 BODIES = {
     "mercury": "3.70",

@@ -244,7 +244,9 @@ def read_list(name: str, typed: str) -> Range:
     """Read a list of values of an input. Raises SceneError."""
     words = [word.strip() for word in typed.split(",")]
     if ":" in typed:
-        raise SceneError(name, typed, "mixes a list with a range; give one of them")
+        raise SceneError(
+            name, typed, "has a comma in a range; numbers take a point, and a list takes no colon"
+        )
     if name not in ("M", "wrap") and re.fullmatch(r"0,\d+", typed.strip()):
         decimal, spaced = typed.strip().replace(",", "."), ", ".join(words)
         raise SceneError(name, typed, f"can mean {decimal} or a list; write {decimal}, or '{spaced}'")

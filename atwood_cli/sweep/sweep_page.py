@@ -8,10 +8,11 @@ from fractions import Fraction
 from itertools import groupby
 
 from ..explain.conditions import Condition
-from ..explain.messages import reasons_in
+from ..explain.messages import on_units, reasons_in, unmarked
 from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
 from ..output.page import Page, aligned, progress
 from ..output.text import VERSION, cell, scene_record
+from ..solver.answers import Answers
 from ..solver.quantities import QUANTITIES, STANDARD
 from ..solver.scene import with_unit
 from .changes import changes, say_regimes
@@ -37,6 +38,10 @@ class SweepPage:
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
         self.reasons: Counter[tuple[str, str]] = Counter()
         self.assumed: list[str] = []
+        greatest = sweep.scene
+        for range_ in sweep.ranges:
+            greatest = greatest.with_number(range_.name, range_.ends[1])
+        self.remarks = [*map(unmarked, on_units(Answers(greatest).to_six_digits))]
         self.done = 0
         """The rows that are solved and, as JSON or CSV, written."""
 
@@ -56,7 +61,7 @@ class SweepPage:
 
     def notes(self) -> list[str]:
         """Say why values are missing, after all rows."""
-        return reasons_in(self.reasons, self.sweep.total)
+        return [*self.remarks, *reasons_in(self.reasons, self.sweep.total)]
 
     def _all_notes(self) -> Iterator[str]:
         """Say what is assumed and why values are missing: an iterator that begins after all rows."""
@@ -114,7 +119,7 @@ class SweepPage:
             groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
             parts = [[next(lines) for _ in group] for _, group in groups]
             page.table(list(columns), parts, keys=len(sweep.ranges))
-        page.say(*reasons_in(missing, sweep.total))
+        page.say(*self.remarks, *reasons_in(missing, sweep.total))
 
 
 PULLEY = "critical_pulley_mass"
