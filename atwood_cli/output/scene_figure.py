@@ -63,7 +63,7 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
     arrows = _arrows_on_arc(answers, kind, radians(wrap)) if kind else None
     if arrows and (friction := abs(arrows.friction).max()):
         below.append(
-            f"Arrows of friction are {arrows.normal.max() / friction:.3g} times as long as to scale."
+            f"Friction is drawn at {arrows.normal.max() / friction:.3g} times the scale of the normal force."
         )
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
@@ -139,8 +139,8 @@ def _draw_pulley(axes: "Axes", answers: Answers, phi: float) -> None:
         _draw_arc(axes, ROTATION_AT * (above[::-1] if answers.decided.slows_down else above), PURPLE, "white")
     if friction := _axle_friction(answers):
         _draw_arc(axes, AXLE_AT * above.conj(), ORANGE, ORANGE)
-        words = f"axle friction\nat the rim = {friction} N"
-        axes.text(0, -0.42, words, ha="center", va="center", size=8, color=ORANGE)
+        words = f"axle friction\nat the rim\n= {friction} N"
+        axes.text(0, -0.55, words, ha="center", va="center", size=8, color=ORANGE)
 
 
 def _draw_arc(axes: "Axes", path: Any, colour: str, head: str) -> None:

@@ -64,7 +64,7 @@ QUANTITIES = {
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
     "critical_lighter_mass": About("limits", "l*", "kg", "", "lighter mass below which the string slips"),
-    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "critical_heavier_mass if the pulley were locked"),
+    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "heavier mass up to which the string holds on any pulley"),
     "least_pulley_mass": About("limits", "M min", "kg", "(36)", "critical_pulley_mass if the heavier mass were infinite"),
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:

@@ -201,7 +201,9 @@ class UncertainAnswers(Answers):
                     i = missing[0]
                     place, why = self._at(x, self._ends_at(1)[x][i]), pair[i].reason
                     reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
-                    groups.setdefault(reason, []).append(_one_sided(name, spread.here, pair[1 - i].value))
+                    other_end = self._at(x, self._ends_at(1)[x][1 - i])
+                    words = _one_sided(name, spread.here, pair[1 - i].value, other_end)
+                    groups.setdefault(reason, []).append(words)
         sentences = []
         for reason, group in groups.items():
             others = len(group) - MOST_NAMED
@@ -216,9 +218,9 @@ class UncertainAnswers(Answers):
         return f"{x} = {with_unit(as_typed(end.input), unit)}"
 
 
-def _one_sided(name: str, here: Decimal, other: Decimal | None) -> str:
-    """Name a quantity without an uncertainty, with the value at the only end that has one."""
+def _one_sided(name: str, here: Decimal, other: Decimal | None, place: str) -> str:
+    """Name a quantity without an uncertainty, with the value at the only end that has one, a place."""
     if other is None or other == here:
         return name
     value = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other)))
-    return f"{name} ({with_unit(value, QUANTITIES[name].unit)} at the other end)"
+    return f"{name} ({with_unit(value, QUANTITIES[name].unit)} at {place})"
