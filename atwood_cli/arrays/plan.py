@@ -34,6 +34,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
+from math import nan
 from typing import Any, Literal, NamedTuple, cast
 
 from ..numbers.digits import to_double
@@ -138,22 +139,20 @@ def _machine_of_columns(task: Task, ar: Doubles) -> Machine[Any]:
     return Machine(_GroupDecisions(task, lambda name: ar.number(Formula("symbol", name))), ar)
 
 
-class Plan(NamedTuple):
-    """How a task is done: the way of each of its quantities."""
+class Step(NamedTuple):
+    """What a plan does for those quantities of a task that need no more answers than the task has."""
 
-    program: Program | None
-    computed: tuple[str, ...]
-    """Quantities that the program gives; where it is not sure of all rows, with a result `condition_of`."""
-    constants: dict[str, float]
-    """Values that are the same in all rows, by quantity."""
+    task: Task
+    uncertain: tuple[str, ...]
+    """Quantities of which the program says by `condition_of` in which rows they are certified."""
     missing: dict[str, str]
     """The reasons of quantities without a value."""
     row_by_row: tuple[str, ...]
     """Quantities that no program gives: rows are solved one by one."""
     question: str
-    """A question, or "". The program gives each row's "answer" to it, and whether that is "sure"."""
-    asking: tuple[str, ...]
-    """Quantities that need the answer first."""
+    """A question, or "". The program gives each row's answer, and says by `condition_of` if it is sure."""
+    others: dict[bool, Task]
+    """The tasks of rows by their answer. Rows with no answer of these go on to the plan's next step."""
 
 
 def condition_of(name: str) -> str:
@@ -162,49 +161,64 @@ def condition_of(name: str) -> str:
 
 
 @lru_cache(KEPT_PLANS)
-def plan(task: Task, accuracy: Accuracy) -> Plan:
-    """Return the plan for a task, made by running the model on columns, quantity by quantity."""
+def plan(task: Task, accuracy: Accuracy, adjoin: bool) -> tuple[Program, list[Step]]:
+    """Return the plan for a task: its steps, and one program for all of them.
+
+    Where rows adjoin each other, a next step is about those with the usual answer: in doubles it takes less
+    time to compute it in all rows than to gather the columns of these.
+    """
+    steps, formulas, tasks = [], dict[str, Term](), [task]
+    for step_task in tasks:
+        step = _step(step_task, accuracy, formulas)
+        steps.append(step)
+        if step.question and adjoin and LEVELS[accuracy][task.level] is DOUBLES:
+            tasks.append(step.others.pop(step.question.startswith("moves_axle")))
+    return Program(formulas), steps
+
+
+def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
+    """Return a step, made by running the model on columns quantity by quantity, and add its formulas."""
     machine = _machine_of_columns(task, LEVELS[accuracy][task.level])
-    values: dict[str, Term] = {}
-    conditions: dict[str, Term] = {}
-    constants: dict[str, float] = {}
     missing: dict[str, str] = {}
-    row_by_row, asking, question = [], [], ""
+    uncertain, row_by_row, asking, question = [], [], [], ""
     for name in task.names:
         try:
             if name == "regime":
-                constants[name] = REGIMES.index(machine.decided.regime)
+                formulas[name] = REGIMES.index(machine.decided.regime)
                 continue
-            values[name], condition = proven_double(getattr(machine, name), accuracy)
+            formulas[name], condition = proven_double(getattr(machine, name), accuracy)
         except Undecided as undecided:
             question = question or str(undecided)
             asking.append(name)
         except Undetermined as undetermined:
-            missing[name] = str(undetermined)
+            formulas[name], missing[name] = nan, str(undetermined)
         except NoProgram:
             row_by_row.append(name)
         else:
             if condition is not None:
-                conditions[condition_of(name)] = condition
-    formulas = values | conditions
+                formulas[condition_of(name)] = condition
+                uncertain.append(name)
+    others = {}
     if question:
         formulas |= _answer(task, question, DOUBLES)
-    program = Program(formulas) if formulas else None
-    return Plan(program, (*values,), constants, missing, (*row_by_row,), question, (*asking,))
+        for answer in (False, True):
+            others[answer] = task._replace(branches=task.branches | {(question, answer)}, names=(*asking,))
+    return Step(task, (*uncertain,), missing, (*row_by_row,), question, others)
 
 
 @lru_cache(KEPT_PLANS)
-def answering(task: Task, question: str, ar: Doubles) -> Program:
-    """Return the program that gives each row's "answer" to a question, and whether that is "sure"."""
-    return Program(_answer(task, question, ar))
+def answering(task: Task, question: str) -> Program:
+    """Return the program that answers a question in pairs, and says by `condition_of` whether it is sure."""
+    return Program(_answer(task, question, PAIRS))
 
 
 def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
     wrap = Formula("symbol", "wrap")
     if question == "long_wrap":
-        return {"sure": less(0.0, wrap), "answer": less(180.0, wrap)}
+        return {condition_of(question): less(0.0, wrap), question: less(180.0, wrap)}
     if question == "ends_hang_down":
-        return {"sure": less(0.0, wrap), "answer": equal(Formula("fmod", wrap, formula(360.0)), 180.0)}
+        is_half_turn = equal(Formula("fmod", wrap, formula(360.0)), 180.0)
+        return {condition_of(question): less(0.0, wrap), question: is_half_turn}
     machine, (method, point) = _machine_of_columns(task, ar), question.split()
     decided = machine.decided
     if method == "moves_axle":
@@ -212,7 +226,7 @@ def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
     else:
         mu = decided.scene.mu if method == "slips_at" else decided.limiting_mu
         margin = ar.log1p(decided.ratio_minus_1(cast(LimitingCase, point), ar)) - ar.number(mu) * machine.phi
-    return {"sure": less(margin.bound, 0.25), "answer": less(0.0, margin.parts[0])}
+    return {condition_of(question): less(margin.bound, 0.25), question: less(0.0, margin.parts[0])}
 
 
 def nearest_double(task: Task, name: str, number: Callable[[str], Any]) -> float | None:

@@ -20,7 +20,6 @@ from ..solver.decisions import Decisions
 from ..solver.quantities import REGIMES, Accuracy
 from .doubles import Column
 from .inputs import Index
-from .pairs import PAIRS
 from .plan import LEVELS, Task, answering, condition_of, nearest_double, plan
 from .program import Program, columns_for
 
@@ -48,51 +47,43 @@ class Rows:
         waiting = [(rows, task)]
         while waiting:
             rows, task = waiting.pop()
-            if not size_of(rows):
-                continue
             if task.level == len(self.levels) or (task.level and size_of(rows) <= ROWS_ONE_BY_ONE):
                 self._solve_one_by_one(rows, task)
             else:
-                waiting += self._follow_plan(rows, task)
+                waiting += [part for part in self._follow_plan(rows, task) if size_of(part[0])]
 
     def _follow_plan(self, rows: Index, task: Task) -> Iterator[tuple[Index, Task]]:
         """Do what the plan of a task says, and yield the tasks that remain, each with its rows."""
-        plan_ = plan(task, self.accuracy)
-        # Some quantities need no program: the rows have one value, or none.
-        for name, constant in plan_.constants.items():
-            self.results[name][rows] = constant
-        for name, reason in plan_.missing.items():
-            self.results[name][rows] = nan
-            self.reasons[name, reason] += size_of(rows)
-        flags: dict[str, Flags] = {}
-        if plan_.program:
-            others = set(plan_.program.results).difference(plan_.computed)
-            flags = {name: np.empty(size_of(rows), np.bool_) for name in others}
-            self._run(plan_.program, rows, plan_.computed, flags)
-        # A quantity that is not certified in a row goes to the next level.
-        for name in plan_.computed:
-            if (condition := condition_of(name)) in flags:
-                failed = select(rows, np.flatnonzero(~flags[condition]))
-                yield failed, task._replace(names=(name,), level=task.level + 1)
-        # A quantity that no program gives goes to the last level at once.
-        if plan_.row_by_row:
-            yield rows, task._replace(names=plan_.row_by_row, level=len(self.levels))
-        # The question splits the rows: either part goes on, with its answer and the quantities that asked.
-        if plan_.question:
-            answers, unsure = flags["answer"], np.flatnonzero(~flags["sure"])
-            answers[unsure] = self._ask(select(rows, unsure), task, plan_.question)
-            for answer in (False, True):
-                places = np.flatnonzero(answers == answer)
-                answered = rows if places.size == answers.size else select(rows, places)
-                decisions = task.branches | {(plan_.question, answer)}
-                yield answered, task._replace(branches=decisions, names=plan_.asking)
+        program, steps = plan(task, self.accuracy, isinstance(rows, slice))
+        flags = self._run(program, rows)
+        remain = np.ones(size_of(rows), np.bool_)
+        for step in steps:
+            for name, reason in step.missing.items():
+                self.reasons[name, reason] += int(np.count_nonzero(remain))
+            # A quantity that is not certified in a row goes to the next level.
+            for name in step.uncertain:
+                failed = select(rows, np.flatnonzero(remain & ~flags[condition_of(name)]))
+                yield failed, step.task._replace(names=(name,), level=task.level + 1)
+            # A quantity that no program gives goes to the last level at once.
+            if step.row_by_row:
+                last = step.task._replace(names=step.row_by_row, level=len(self.levels))
+                yield select(rows, np.flatnonzero(remain)), last
+            # The question splits the rows: some leave, with their answer and the quantities that asked.
+            if question := step.question:
+                answers, unsure = flags[question], np.flatnonzero(remain & ~flags[condition_of(question)])
+                answers[unsure] = self._ask(select(rows, unsure), step.task, question)
+                for answer, other_task in step.others.items():
+                    places = np.flatnonzero(remain & (answers == answer))
+                    yield rows if places.size == answers.size else select(rows, places), other_task
+                    remain &= answers != answer
 
-    def _run(
-        self, program: Program, rows: Index, quantities: tuple[str, ...], flags: Mapping[str, Flags]
-    ) -> None:
-        """Run a program tile by tile. ``flags`` are columns for those results that are no quantities."""
+    def _run(self, program: Program, rows: Index) -> dict[str, Flags]:
+        """Run a program tile by tile, and return the columns of those results that are no quantities."""
         adjoin, size = isinstance(rows, slice), size_of(rows)
-        gathered = [] if adjoin else [np.float64] * (len(program.inputs) + len(quantities))
+        quantities = self.results.keys() & program.results
+        flags = {name: np.empty(size, np.bool_) for name in set(program.results) - quantities}
+        types = [*(self.results[name].dtype.type for name in quantities), *[np.float64] * len(program.inputs)]
+        gathered = [] if adjoin else types
         tile_size = min(TILE_ROWS, size)
         scratch = columns_for([*gathered, *program.between], tile_size)
         for start in range(0, size, tile_size):
@@ -102,20 +93,24 @@ class Rows:
             free, between = iter(columns), columns[len(gathered) :]
             # Where rows adjoin each other, the program reads inputs and writes quantities in place.
             # Elsewhere, both are gathered in columns of their own.
-            inputs = {name: _rows_of(self.inputs[name], tile, free) for name in program.inputs}
             results = {name: self.results[name][tile] if adjoin else next(free) for name in quantities}
+            inputs = {name: self.inputs[name] for name in program.inputs}
+            for name, column in inputs.items():
+                if column.ndim:
+                    inputs[name] = column[tile] if adjoin else column.take(tile, out=next(free), mode="clip")
             program.run(inputs, results | {name: flags[name][places] for name in flags}, between)
             if not adjoin:
                 for name in quantities:
                     self.results[name][tile] = results[name]
+        return flags
 
     def _ask(self, rows: NDArray[np.intp], task: Task, question: str) -> Flags:
         """Return each row's answer to a question that doubles leave open."""
-        answers, sure = np.empty((2, rows.size), np.bool_)
-        sure[:] = False
+        answers, sure = np.zeros((2, rows.size), np.bool_)
         # Pairs may decide it. They are not worth a program for few rows.
         if rows.size > ROWS_ONE_BY_ONE:
-            self._run(answering(task, question, PAIRS), rows, (), {"answer": answers, "sure": sure})
+            flags = self._run(answering(task, question), rows)
+            answers, sure = flags[question], flags[condition_of(question)]
         # Exact arithmetic decides the rest.
         for place in np.flatnonzero(~sure).tolist():
             method, point = question.split()
@@ -153,13 +148,6 @@ class Rows:
         """Return an input of a row, exactly."""
         column = self.inputs[name]
         return Fraction(float(column[row] if column.ndim else column))
-
-
-def _rows_of(column: Column, rows: Index, free: Iterator[Column]) -> Column:
-    """Return rows of a column, copied to a free one unless they adjoin each other; a number stays single."""
-    if not column.ndim:
-        return column
-    return column[rows] if isinstance(rows, slice) else column.take(rows, out=next(free), mode="clip")
 
 
 def size_of(index: Index) -> int:
