@@ -330,4 +330,4 @@ def proven_double(value: Bounded, accuracy: Accuracy) -> tuple[Term, Formula | N
         return double, either(both(*ends), equal(value.bound, 0.0))
     if not isinstance(value.row_error, Formula) and value.fixed_error <= MOST_ERROR:
         return double, None
-    return double, at_most(value.bound, MOST_ERROR)
+    return double, at_most(value.row_error, MOST_ERROR - value.fixed_error)

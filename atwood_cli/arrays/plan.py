@@ -226,7 +226,8 @@ def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
     else:
         mu = decided.scene.mu if method == "slips_at" else decided.limiting_mu
         margin = ar.log1p(decided.ratio_minus_1(cast(LimitingCase, point), ar)) - ar.number(mu) * machine.phi
-    return {condition_of(question): less(margin.bound, 0.25), question: less(0.0, margin.parts[0])}
+    sure = less(margin.row_error, 0.25 - margin.fixed_error)
+    return {condition_of(question): sure, question: less(0.0, margin.parts[0])}
 
 
 def nearest_double(task: Task, name: str, number: Callable[[str], Any]) -> float | None:
