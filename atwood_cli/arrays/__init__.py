@@ -147,10 +147,8 @@ def _solve(
         if group.pattern:
             level = len(LEVELS[rows.accuracy]) if group.beyond_window else 0
             row = partial(rows.number, select(group.rows, 0))
-            inputs = dict(zip(INPUTS, group.pattern.inputs, strict=True))
-            if inputs["mu"] is None:
-                for assumption in Decisions(group.pattern.scene(row)).assumptions.items():
-                    rows.reasons[assumption] += size_of(group.rows)
+            for assumption in Decisions(group.pattern.scene(row)).assumptions.items():
+                rows.reasons[assumption] += size_of(group.rows)
             rows.solve(group.rows, Task(group.pattern, frozenset(), names, level))
             continue
         for name in names:
