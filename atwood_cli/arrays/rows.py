@@ -68,7 +68,7 @@ class Rows:
             if step.row_by_row:
                 last = step.task._replace(names=step.row_by_row, level=len(self.levels))
                 yield select(rows, np.flatnonzero(remain)), last
-            # The question splits the rows: some leave, with their answer and the quantities that asked.
+            # The question splits the rows: some leave, and what asked is then written over in them.
             if question := step.question:
                 answers, unsure = flags[question], np.flatnonzero(remain & ~flags[condition_of(question)])
                 answers[unsure] = self._ask(select(rows, unsure), step.task, question)
