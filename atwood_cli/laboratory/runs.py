@@ -56,7 +56,7 @@ LIKE_MASS = re.compile(
     r"|\w*груз\w*)(?:\b|_)",
     re.IGNORECASE,
 )
-LARGE_MASSES = Fraction(1, 2), "some masses are 0.5 kg or more; if they are in g, say so, as in m1 (g)."
+LARGE_MASSES = 0.5, "some masses are 0.5 kg or more; if they are in g, say so, as in m1 (g)."
 LARGE = {
     "m1": LARGE_MASSES,
     "m2": LARGE_MASSES,
@@ -156,7 +156,8 @@ def read_runs(
     remarks = read_as(headings, sheet.separator, comma, [*words, *sheet.remarks], with_units)
     # The uncertainty of what is shared counts for all runs together.
     shared = {x: (read.value, Fraction(0)) for x, read in given.items() if x != "hanger"}
-    large = _large("drop", given["drop"], "") if "drop" in given else set[str]()
+    bare = {heading.name for heading in headings if not heading.unit and heading.place not in with_units}
+    bare |= {x for x, read in given.items() if not OWN_UNIT.search(str(read.given))}
     same, runs, traces = dict[str, Input](), RowsOfRuns(), list[int]()
     numbers = numbers or list(range(1, len(sheet.rows) + 1))
     for number, row in zip(numbers, sheet.rows, strict=True):
@@ -165,7 +166,6 @@ def read_runs(
             continue
         inputs, measured = dict[str, Number](), Numbers()
         for heading, cell in _read_row(number, row, headings, comma, by):
-            large |= _large(heading.name, cell, heading.unit)
             if heading.name in MEASURED:
                 measured[f"{number}:{heading.name[0]}{heading.number}"] = cell[:2]
             elif heading.name not in CONDITIONS:
@@ -187,8 +187,10 @@ def read_runs(
     left_out = [*map(str, without)]
     if left_out:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
-    remarks += sorted(large)
     result = _as_columns(kind, runs, numbers, left_out)
+    columns = {**result.given, kind: result.values}
+    large = [LARGE[x][1] for x in columns if x in LARGE and x in bare and max(columns[x]) >= LARGE[x][0]]
+    remarks += dict.fromkeys(large)
     m1, m2 = (result.given[mass] for mass in MASSES)
     if min(m1) == max(m1) > CART * max(m2):
         remarks.append(f"m1 is {m1[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1.")
@@ -205,14 +207,6 @@ def _in_own_terms(name: str, read: Input, by: Mapping[str, Any]) -> Input:
         raise SceneError(name, read.given, rule)
     value, uncertainty = (terms.own(x, by[terms.by]) for x in (number, read.uncertainty))
     return Input(value, uncertainty, read.given)
-
-
-def _large(name: str, cell: Input, unit: str) -> set[str]:
-    """Return the remark on a number that may be in a smaller unit, which heading and cell leave out."""
-    if name not in LARGE or unit or OWN_UNIT.search(str(cell.given)):
-        return set()
-    least, remark = LARGE[name]
-    return {remark} if cell.value >= least else set()
 
 
 def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Sequence[str]) -> Runs:
@@ -296,41 +290,34 @@ def _check(
     if double := [x for x in has if has[x] in names]:
         rule = f"is not needed, as the table has {has[double[0]]}; leave it out"
         raise SceneError(double[0], given[double[0]].given, rule)
-    missing = [name for name in MASSES if name not in names and name not in given]
-    missing += [] if kinds else ["t"]
-    missing += [] if {"a", "drop"} & {*names, *given} else ["drop"]
+    left, missing = [*unread.values()], [mass for mass in MASSES if mass not in {*names, *given}]
+    if not kinds:
+        missing.append("a" if _fitting("a", left) and not _fitting("t", left) else "t")
+    if not {"a", "drop"} & {*names, *given, *missing}:
+        missing.append("drop")
     if missing:
-        raise Unreadable(*_missing(missing, sheet, unread, named))
+        raise Unreadable(*_missing(missing, sheet, left, named))
     return "a" if "a" in names else "time"
 
 
 def _missing(
-    missing: Sequence[str], sheet: Sheet, unread: Unread, named: Mapping[str, str]
+    missing: Sequence[str], sheet: Sheet, left: Sequence[tuple[str, str]], named: Mapping[str, str]
 ) -> tuple[str, str]:
     """Return which columns runs need, those of the table, and options that name what is missing."""
-    left, ways, lacking, others = [*unread.values()], dict(named), list[str](), list[str]()
-    for name in missing:
-        fitting = _fitting(name, left)
-        if name == "t" and not fitting and (fitting := _fitting("a", left)):
-            name = "a"
-        elif name == "drop" and "a" in lacking:
-            continue
-        fitting = fitting if name in ("t", "a") else fitting[:1]
-        left = [column for column in left if column not in fitting]
-        ways |= {column: name for column, _ in fitting}
-        lacking.append(name)
-        if not fitting:
-            is_alone = not left and len({*missing} & {*MASSES}) == 1
-            without_column = {"drop": "--drop HEIGHT"} | ({x: f"--{x} 0" for x in MASSES} if is_alone else {})
-            others.append(without_column.get(name, f"--column {name}=HEADING"))
-    options = [*(f"--column {quote(f'{name}={column}')}" for column, name in ways.items()), *others]
     why = f"runs need m1, m2, and a, or t with the height of fall, drop; there are {listed(sheet.columns)}"
-    why += f"; {', '.join(lacking)} {'are' if lacking[1:] else 'is'} missing"
-    is_turned = unread and all(LIKE_NUMBER.match(column) for column, _ in unread.values())
+    why += f"; {', '.join(missing)} {'are' if missing[1:] else 'is'} missing"
+    is_turned = left and all(LIKE_NUMBER.match(column) for column, _ in left)
     if is_turned or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
         return f"{why}: make each run a row, below headings, as m1 (g),m2 (g),t (s)", ""
-    or_none = ", or --m1 0 if m2 alone hangs" if "--column m1=HEADING" in options else ""
-    return why, f"; give {' '.join(options)}{or_none}"
+    options, alone = [f"--column {quote(f'{name}={column}')}" for column, name in named.items()], ""
+    for name in missing:
+        fitting = _fitting(name, left)[: None if name in ("t", "a") else 1]
+        left = [column for column in left if column not in fitting]
+        absent = "--drop HEIGHT" if name == "drop" else f"--column {name}=HEADING"
+        options += [f"--column {quote(f'{name}={column}')}" for column, _ in fitting] or [absent]
+        if name == "m1" and not fitting:
+            alone = ", or --m1 0 if m2 alone hangs"
+    return why, f"; give {' '.join(options)}{alone}"
 
 
 def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
