@@ -116,16 +116,6 @@ def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
             yield [given._replace(scene=given.scene.with_number(x, end)) for end in (size - u, size + u)]
 
 
-def _as_one_height(runs: Runs, given: Conditions) -> tuple[Runs, Conditions]:
-    """Count the same uncertain height in all rows as that of an option: it is wrong in all runs alike."""
-    heights = {*zip(runs.given.get("drop", ()), runs.u.get("drop", ()), strict=True)}
-    if len(heights) != 1 or not any(u for _, u in heights):
-        return runs, given
-    value, u = (Fraction(str(float(x))) for x in heights.pop())
-    shared = conditions_of({**given.inputs, "drop": Input(value, u, None)})
-    return runs._replace(u={**runs.u, "drop": 0 * runs.u["drop"]}), shared
-
-
 def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     """Return the quantities to fit, by names or symbols; both usual ones unless given. Raises SceneError.
 
@@ -157,7 +147,6 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of these quantities, with outliers and causes. Raises SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
         raise SceneError("find", "delay", "needs times; the table has accelerations")
-    runs, given = _as_one_height(runs, given)
     difference = runs.given["m2"] - runs.given["m1"]
     held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
     unusable = {

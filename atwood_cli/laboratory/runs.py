@@ -191,6 +191,10 @@ def read_runs(
     columns = {**result.given, kind: result.values}
     large = [LARGE[x][1] for x in columns if x in LARGE and x in bare and max(columns[x]) >= LARGE[x][0]]
     remarks += dict.fromkeys(large)
+    heights = {dict(run).get("drop") for run in runs}
+    if "drop" not in given and len(heights) == 1 and (height := heights.pop()):
+        same["drop"] = Input(*height, None)  # if it is wrong, it is so in all runs alike
+        result.u["drop"][:] = 0
     m1, m2 = (result.given[mass] for mass in MASSES)
     if min(m1) == max(m1) > CART * max(m2):
         remarks.append(f"m1 is {m1[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1.")
