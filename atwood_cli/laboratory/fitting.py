@@ -181,7 +181,11 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         message = mistakes[0][1] if mistakes else "".join(error.args)
         raise CannotSeparate(f"{message}{behind_an_error(remarks)}") from None
     fit = fit._replace(shown=shown, outliers=[*_outliers(fit)] or mistakes)
-    return fit._replace(causes=[*_causes(fit), *_impossible(fit)])
+    causes = _held(fit) or _causes(fit)
+    low, high = fit.results["gravity"].interval if "gravity" in names else EARTH
+    if high < EARTH[0] or low > EARTH[1]:
+        causes.append(f"gravity is not that of Earth, {EARTH[0]} to {EARTH[1]} m/s²: {CHECK}")
+    return fit._replace(causes=causes)
 
 
 def _with_results(runs: Runs, used: Selection, data: Data, given: Conditions, names: Sequence[str]) -> Fitted:
@@ -283,18 +287,16 @@ def _cause(name: str, value: float, u: float, given: Conditions, names: Sequence
     return f"{words} ({without}`--find {','.join(names)}`)"
 
 
-def _impossible(fit: Fitted) -> Iterator[str]:
-    """Yield messages on runs that would not move with the fitted axle, and on gravity that is not Earth's."""
-    moves = expected(fit.data._replace(drop=None), fit.values) > 0
+def _held(fit: Fitted) -> list[str]:
+    """Return messages on runs that would not move with the fitted axle: no cause in all runs explains them."""
+    messages, moves = list[str](), expected(fit.data._replace(drop=None), fit.values) > 0
     for run in np.flatnonzero(fit.used)[~moves].tolist():
-        given = ", ".join(
+        given = (
             f"{x} = {rounded(column[run], 3)} {parameter_of(x).unit}" for x, column in fit.runs.given.items()
         )
-        stuck = "would not move, as the fitted axle holds it"
-        yield f"{fit.runs.rows_in_words(run)} ({given}) {stuck}: {CHECK}"
-    low, high = fit.results["gravity"].interval if "gravity" in fit.results else EARTH
-    if high < EARTH[0] or low > EARTH[1]:
-        yield f"gravity is not that of Earth, {EARTH[0]} to {EARTH[1]} m/s²: {CHECK}"
+        where = f"{fit.runs.rows_in_words(run)} ({', '.join(given)})"
+        messages.append(f"{where} would not move, as the fitted axle holds it: {CHECK}")
+    return messages
 
 
 # Outliers
