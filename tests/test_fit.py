@@ -495,7 +495,7 @@ def test_in_python_it_is_what_json_has() -> None:
     assert lines[3:] == list(result.notes)
     odd = [*zip(*csv.reader(ODD.splitlines()), strict=True)]
     said = laboratory_fit({name: cells for name, *cells in odd}).notes[1]
-    assert said.endswith("fit of the other runs; if it is a mistake, leave it out: without='5'.")
+    assert said.endswith("what the others give; if it is a mistake, leave it out: without='5'.")
 
 
 @pytest.mark.parametrize(

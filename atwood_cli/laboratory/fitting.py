@@ -315,40 +315,41 @@ def _suspects(fit: Fitted) -> str:
     return ""
 
 
-def _outliers(fit: Fitted) -> Iterator[tuple[int, str]]:
-    """Yield outliers among the repeats of each run, and among the runs without these repeats.
+def _outliers(fit: Fitted) -> list[tuple[int, str]]:
+    """Return outliers among the repeats of each run, and among the runs without these repeats.
 
-    What is wrong with a run is named once. Few repeats are judged as runs of their own.
+    What is wrong with a run or with a row is named once. Few repeats are judged as runs of their own.
     """
-    runs, row_of = fit.runs, [cell.split(":")[0] for cell in fit.runs.cells]
+    runs, messages = fit.runs, dict[str, tuple[int, str]]()
     places = np.flatnonzero((fit.used & (np.bincount(runs.run) > 1))[runs.run])
     free = len(places) - len({*runs.run[places]})
-    is_few = 0 < free < FEW_REPEATS and not fit.data.stated
-    kept, far_runs = np.ones(len(runs.values), dtype=bool), dict[int, float]()
-    if is_few:
+    kept = np.ones(len(runs.values), dtype=bool)
+    if 0 < free < FEW_REPEATS and not fit.data.stated:
         given, u = ({x: column[runs.run] for x, column in some.items()} for some in (runs.given, runs.u))
         single = runs._replace(given=given, u=u, left_out=runs.left_out[runs.run], run=np.arange(len(kept)))
-        far_cells = _far_runs(fit._replace(runs=single, used=fit.used[runs.run]), kept)
+        far = _far_runs(fit._replace(runs=single, used=fit.used[runs.run]), kept)
     else:
-        far_cells = _far_repeats(fit, places, free)
-        kept[[*far_cells]] = False
-        far_runs = _far_runs(fit, kept)
-    others = "a fit of the others" if is_few else "its repeats, by the scatter of the others"
-    named = set[str]()
-    for place, far in far_cells.items():
-        run, row, cell = int(runs.run[place]), row_of[place], runs.cells[place]
-        in_row = {i for i, other in enumerate(row_of) if other == row}
-        if run in far_runs or row in named:
-            continue
-        if in_row <= {*far_cells} and (is_few or in_row > {place}):
-            named.add(row)
-            yield run, _far(f"row {row} is", far, others, row)
-        else:
-            value = f"{format_number(float(runs.values[place]))} {parameter_of(runs.kind).unit}"
-            yield run, _far(f"{in_words(cell)} = {value} is", far, others, cell)
-    for run, far in far_runs.items():
-        what = f"{runs.rows_in_words(run)} {'are' if runs.rows[run][1:] else 'is'}"
-        yield run, _far(what, far, "a fit of the other runs", ",".join(map(str, runs.rows[run])))
+        far = _far_repeats(fit, places, free)
+        kept[[*far]] = False
+        for run, distance in _far_runs(fit, kept).items():
+            far |= dict.fromkeys(np.flatnonzero(runs.run == run).tolist(), distance)
+    for place, distance in far.items():
+        run, cell, value = int(runs.run[place]), runs.cells[place], ""
+        of_run, row = np.flatnonzero(runs.run == run).tolist(), cell.split(":")[0]
+        where: Sequence[int | str] = runs.rows[run]
+        if not far.keys() >= {*of_run}:
+            where = [row]
+            if not all(i in far for i in of_run if runs.cells[i].startswith(f"{row}:")):
+                where, value = (
+                    [cell],
+                    f" = {format_number(float(runs.values[place]))} {parameter_of(runs.kind).unit}",
+                )
+        what = f"{in_words(*where)}{value} {'are' if where[1:] else 'is'}"
+        left_out = ",".join(map(str, where))
+        why = f"{rounded(abs(distance))} standard deviations from what the others give"
+        way = f"if it is a mistake, leave it out: `--without {left_out}`"
+        messages.setdefault(left_out, (run, f"{what} {why}; {way}"))
+    return [*messages.values()]
 
 
 def _far_repeats(fit: Fitted, places: Places, free: int) -> dict[int, float]:
@@ -381,12 +382,6 @@ def _far_runs(fit: Fitted, kept: Selection) -> dict[int, float]:
         return distances_from(line_of(of_measured, data, best, names), some)
 
     return outliers(judge, usable, len(usable) - len(names), OUTLIER_LEVEL)
-
-
-def _far(what: str, distance: float, others: str, where: str) -> str:
-    """Say how many standard deviations something is from others, and how to leave it out."""
-    far = f"{rounded(abs(distance))} standard deviations from {others}"
-    return f"{what} {far}; if it is a mistake, leave it out: `--without {where}`"
 
 
 # Why there is no result
