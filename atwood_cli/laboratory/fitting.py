@@ -288,7 +288,7 @@ def _cause(name: str, value: float, u: float, given: Conditions, names: Sequence
 
 
 def _held(fit: Fitted) -> list[str]:
-    """Return messages on runs that would not move with the fitted axle: no cause in all runs explains them."""
+    """Say which runs the fitted axle would hold, which no cause in all runs explains."""
     messages, moves = list[str](), expected(fit.data._replace(drop=None), fit.values) > 0
     for run in np.flatnonzero(fit.used)[~moves].tolist():
         given = (
