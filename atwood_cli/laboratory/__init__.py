@@ -108,7 +108,6 @@ def fit_of(
     shared = {x: _read_given(x, value) for x, value in given.items() if value is not None}
     inputs: dict[str, Input] = {x: read_input(x, None) for x in INPUTS}
     inputs |= {x: read for x, read in shared.items() if x not in (*MASSES, "hanger")}
-    conditions_of(inputs)  # raises before the table is read
     named = read_named(map(without_blanks, columns), VOCABULARY)
     if not {"g", "gravity"} & {*divided(find)}:
         shared.setdefault("g", inputs["g"])

@@ -190,13 +190,12 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
 
 def _with_results(runs: Runs, used: Selection, data: Data, given: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of the runs that are used. Raises CannotSeparate."""
-
-    def under(near: Conditions) -> dict[str, float]:
-        return _with_derived(estimate(data, near.values, names, values)[0], names, near)
-
     try:
         values, line = estimate(data, given.values, names)
-        ends = [[*map(under, pair)] for pair in _neighbours(given)]
+        ends = [
+            [_with_derived(estimate(data, near.values, names, values)[0], names, near) for near in pair]
+            for pair in _neighbours(given)
+        ]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
         message = CHECK
         with suppress(CannotSeparate):

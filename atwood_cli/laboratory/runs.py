@@ -108,8 +108,7 @@ class Runs(NamedTuple):
 
 Number = tuple[Fraction, Fraction]
 """An exact value in SI units, and its standard uncertainty."""
-Numbers = dict[str, Number]
-RowsOfRuns = dict[tuple[tuple[str, Number], ...], tuple[list[int], Numbers]]
+RowsOfRuns = dict[tuple[tuple[str, Number], ...], tuple[list[int], dict[str, Number]]]
 """The rows of a run and its measurements by their cells; the key is what the run gives, by name."""
 
 
@@ -134,7 +133,7 @@ def read_runs(
     numbers = _numbers_of_rows(sheet, headings)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     known = {*places, 0} if numbers else {*places}
-    unread = {
+    unread = {  # columns of numbers, by their places: the heading, and the first number
         place: (column, cell)
         for place, (column, *cells) in enumerate(zip(sheet.columns, *sheet.rows, strict=True))
         if not (place in known or column in labels) and (cell := next(filter(LIKE_NUMBER.match, cells), ""))
@@ -164,7 +163,7 @@ def read_runs(
         if _begins_trace(row, headings):
             traces.append(number)
             continue
-        inputs, measured = dict[str, Number](), Numbers()
+        inputs, measured = dict[str, Number](), dict[str, Number]()
         for heading, cell in _read_row(number, row, headings, comma, by):
             if heading.name in MEASURED:
                 measured[f"{number}:{heading.name[0]}{heading.number}"] = cell[:2]
@@ -252,9 +251,6 @@ def behind_an_error(remarks: Sequence[str]) -> str:
 
 # Headings
 
-Unread = dict[int, tuple[str, str]]
-"""Columns of numbers that are not read, by their places: the heading, and the first number."""
-
 
 def _headings(sheet: Sheet, labels: Collection[str], named: Mapping[str, str]) -> list[Heading]:
     """Return the columns that hold a quantity. Raises Unreadable, also for tables side by side."""
@@ -277,7 +273,7 @@ def _numbers_of_rows(sheet: Sheet, headings: Sequence[Heading]) -> list[int]:
 def _check(
     sheet: Sheet,
     headings: Sequence[Heading],
-    unread: Unread,
+    unread: Mapping[int, tuple[str, str]],
     given: Mapping[str, Input],
     named: Mapping[str, str],
 ) -> Kind:
@@ -332,7 +328,9 @@ def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, st
     return by_name or [x for x in unread if any(is_unit(unit, meaning) for unit in units[x])]
 
 
-def _check_labels(headings: Sequence[Heading], unread: Unread, named: Mapping[str, str]) -> None:
+def _check_labels(
+    headings: Sequence[Heading], unread: Mapping[int, tuple[str, str]], named: Mapping[str, str]
+) -> None:
     """Raise Unreadable for a column of numbers that could hold a quantity, and is no label then."""
     measured = {own.place for own in headings if own.name in MEASURED and own.column not in named}
     mass = Heading(0, "", "m1")
