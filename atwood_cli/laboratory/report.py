@@ -13,17 +13,13 @@ from ..output.text import Report, cell, inputs_in_words
 from ..solver.scene import parameter_of
 from .estimate import ROUNDING, as_data, expected
 from .fitting import RARE, SELDOM, Fitted
-from .results import QUANTITIES, USUAL, Fit, cut, equation, published, rounded
+from .results import QUANTITIES, RESULTS, USUAL, Fit, cut, equation, published, rounded
 from .runs import MEASURED
 from .statistics import NORMAL_DOF
 
 COMPUTED = 1e-9
 """Below this share of what is measured nobody's runs scatter."""
 NOT_FITTED = "no value, as it is given, was not to be fitted, or the runs do not determine it"
-NEEDS = {
-    "moment_of_inertia": "needs the rim mass to be fitted, and R",
-    "pulley_mass": "needs the rim mass to be fitted, and the pulley's shape, --inertia",
-}
 
 
 # Sentences
@@ -123,7 +119,7 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
         rows = public.runs
     elif only:
         sentences = [equation(x, *results[x][:2]) for x in only if x in results]
-        sentences += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
+        sentences += [f"{RESULTS[x]}: {NOT_FITTED}." for x in only if record[x] is None]
         first_cause = len(public.notes) - len(fit.causes)
         sentences += [*public.notes[1 : 1 + len(fit.outliers)], *public.notes[first_cause:]]
     else:
