@@ -1,6 +1,7 @@
 """A table of runs, from a file or from columns in Python, and the runs that its rows make."""
 
 import re
+from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
@@ -157,11 +158,11 @@ def read_runs(
     shared = {x: (read.value, Fraction(0)) for x, read in given.items() if x != "hanger"}
     bare = {heading.name for heading in headings if not heading.unit and heading.place not in with_units}
     bare |= {x for x, read in given.items() if not OWN_UNIT.search(str(read.given))}
-    same, runs, traces = dict[str, Input](), RowsOfRuns(), list[int]()
+    same, runs, unused = dict[str, Input](), RowsOfRuns(), defaultdict[str, list[int]](list)
     numbers = numbers or list(range(1, len(sheet.rows) + 1))
     for number, row in zip(numbers, sheet.rows, strict=True):
         if _begins_trace(row, headings):
-            traces.append(number)
+            unused["the height and the time are 0"].append(number)
             continue
         inputs, measured = dict[str, Number](), dict[str, Number]()
         for heading, cell in _read_row(number, row, headings, comma, by):
@@ -178,9 +179,8 @@ def read_runs(
             rows.append(number)
             measurements.update(measured)
         else:
-            remarks.append(f"row {number} has no {kind}: it is not used.")
-    if traces:
-        remarks.append(f"{in_words(*traces)}: not used, as the height and the time are 0.")
+            unused[f"no {MEASURED[kind]} was measured"].append(number)
+    remarks += [f"{in_words(*rows)}: not used, as {reason}." for reason, rows in unused.items()]
     if not runs:
         raise Unreadable(f"it has no runs{behind_an_error(remarks)}")
     left_out = [*map(str, without)]
