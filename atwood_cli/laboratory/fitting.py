@@ -333,16 +333,14 @@ def _outliers(fit: Fitted) -> list[tuple[int, str]]:
         for run, distance in _far_runs(fit, kept).items():
             far |= dict.fromkeys(np.flatnonzero(runs.run == run).tolist(), distance)
     for place, distance in far.items():
-        run, cell, value = int(runs.run[place]), runs.cells[place], ""
+        run, cell = int(runs.run[place]), runs.cells[place]
         of_run, row = np.flatnonzero(runs.run == run).tolist(), cell.split(":")[0]
         where: Sequence[int | str] = runs.rows[run]
-        if not far.keys() >= {*of_run}:
-            where = [row]
-            if not all(i in far for i in of_run if runs.cells[i].startswith(f"{row}:")):
-                where, value = (
-                    [cell],
-                    f" = {format_number(float(runs.values[place]))} {parameter_of(runs.kind).unit}",
-                )
+        if not all(i in far for i in of_run):
+            is_whole = all(i in far for i in of_run if runs.cells[i].startswith(f"{row}:"))
+            where = [row if is_whole else cell]
+        unit = parameter_of(runs.kind).unit
+        value = f" = {format_number(float(runs.values[place]))} {unit}" if where == [cell] else ""
         what = f"{in_words(*where)}{value} {'are' if where[1:] else 'is'}"
         left_out = ",".join(map(str, where))
         why = f"{rounded(abs(distance))} standard deviations from what the others give"

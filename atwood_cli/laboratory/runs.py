@@ -156,6 +156,7 @@ def read_runs(
     remarks = read_as(headings, sheet.separator, comma, [*words, *sheet.remarks], with_units)
     # The uncertainty of what is shared counts for all runs together.
     shared = {x: (read.value, Fraction(0)) for x, read in given.items() if x != "hanger"}
+    # What has no unit may have been meant in a smaller one.
     bare = {heading.name for heading in headings if not heading.unit and heading.place not in with_units}
     bare |= {x for x, read in given.items() if not OWN_UNIT.search(str(read.given))}
     same, runs, unused = dict[str, Input](), RowsOfRuns(), defaultdict[str, list[int]](list)
