@@ -33,7 +33,9 @@ def test_forces_along_the_arc_add_up_and_keep_to_the_limits_of_friction() -> Non
         s, balance = solve(**scene, digits=40), cast(Any, seen.balance)
         numbers = (s.tension_1, s.tension_2, scene.get("R", 1), scene.get("mu", 0), scene.get("wrap", 180))
         t1, t2, radius, mu, wrap = (mpmath.mpf(str(number)) for number in numbers)
-        assert balance["sum"] == balance["resultant"], scene
+        magnitude, ends = mpmath.mpf(str(balance["resultant"].pop("magnitude"))), balance["resultant"]
+        assert balance["sum"] == ends, scene
+        assert abs(magnitude - mpmath.hypot(*(mpmath.mpf(str(ends[x])) for x in "xy"))) <= magnitude / 10**28
         assert balance["torque"]["contact"] == balance["torque"]["ends"]
         ends = mpmath.mpf(str(balance["torque"]["ends"]))
         assert abs(ends - (t2 - t1) * radius) <= 2 * max(t1, t2) * radius / 10**29
