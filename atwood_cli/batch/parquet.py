@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from io import TextIOWrapper
-from queue import SimpleQueue
+from itertools import takewhile
+from threading import Event
 from typing import IO, TYPE_CHECKING
 
 from ..output.page import progress
@@ -21,10 +22,13 @@ if TYPE_CHECKING:
 def solve_parquet(source: IO[bytes], target: IO[bytes], wanted: Wanted, tally: Tally) -> ReadColumns:
     """Write a file of scenes with their results, in the same order.
 
-    Raises Unreadable for a file that is no Parquet, or is damaged.
+    A thread writes while this one waits, as polars would not hear Ctrl-C. Raises Unreadable for a file that
+    is no Parquet, or is damaged.
     """
     import polars as pl
+    from polars.io.plugins import register_io_source
 
+    stopped = Event()
     with _reading():
         table = pl.scan_parquet(source)
         schema = table.collect_schema()
@@ -32,49 +36,21 @@ def solve_parquet(source: IO[bytes], target: IO[bytes], wanted: Wanted, tally: T
         columns = read_columns(schema.names(), wanted)
         head = with_results(pl.DataFrame(schema=schema), columns, wanted)
         parts = table.collect_batches(maintain_order=True)
-        written = _write(
-            (with_results(part, columns, wanted, tally) for part in parts), head.schema, target, total
-        )
-    if written != total:
-        raise Unreadable(f"it is damaged: it should have {total} rows, and has {written}")
+        with progress(parts, total, pl.DataFrame.__len__, pl.DataFrame.__len__) as watched:
+
+            def solved(*_: object) -> "Iterator[pl.DataFrame]":
+                for part in takewhile(lambda _: not stopped.is_set(), watched):
+                    yield with_results(part, columns, wanted, tally)
+
+            table = register_io_source(solved, schema=head.schema)
+            with ThreadPoolExecutor(1) as writer:
+                try:
+                    writer.submit(table.sink_parquet, target, compression="snappy").result()
+                finally:
+                    stopped.set()
+    if tally.rows != total:
+        raise Unreadable(f"it is damaged: it should have {total} rows, and has {tally.rows}")
     return columns
-
-
-def _write(frames: "Iterator[pl.DataFrame]", schema: "pl.Schema", target: IO[bytes], total: int) -> int:
-    """Write frames as Parquet. Returns the number of all rows, which should be the ``total``.
-
-    A thread writes while this one waits and shows progress, as polars would not hear Ctrl-C. An error ends
-    the frames, since polars would panic over an exception, and is raised here.
-    """
-    from polars.io.plugins import register_io_source
-
-    done: SimpleQueue[int | None] = SimpleQueue()
-    failed: list[BaseException] = []
-
-    def source(*_: object) -> "Iterator[pl.DataFrame]":
-        try:
-            while not failed and (frame := next(frames, None)) is not None:
-                done.put(frame.height)
-                yield frame
-        except GeneratorExit:
-            raise
-        except BaseException as error:
-            failed.append(error)
-
-    sink = register_io_source(source, schema=schema).sink_parquet
-    with ThreadPoolExecutor(1) as writer:
-        writing = writer.submit(sink, target, compression="snappy")
-        writing.add_done_callback(lambda _: done.put(None))
-        try:
-            with progress(iter(done.get, None), total, int, int) as heights:
-                written = sum(heights)
-        except BaseException as error:
-            failed.append(error)
-            raise
-    if failed:
-        raise failed[0]
-    writing.result()
-    return written
 
 
 @contextmanager
