@@ -150,7 +150,7 @@ def test_a_cell_is_a_number_where_solve_takes_it_for_one(batch: Batch) -> None:
 LONG = "x" * 200_000
 """Python's own reader of CSV takes 131,072 characters at most."""
 MANY = ",".join(["m1,m2", *(f"x{i}" for i in range(1022))])
-LEFT_OPEN = "is longer than 1 MB, the most taken; is a quotation mark left open?"
+LEFT_OPEN = 'has a quotation mark that is left open or out of place; write it "like ""this"""'
 
 
 @pytest.mark.parametrize(

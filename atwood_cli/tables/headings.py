@@ -22,7 +22,7 @@ from ..numbers.text import in_quotes, without_blanks
 from ..reading.inputs import read_input
 from ..reading.units import PERCENT, Malformed, read_unit, symbol_of, terms_of
 from ..solver.scene import Input, InTerms, SceneError, Terms, parameter_of
-from .sources import Unreadable
+from .sources import LONGEST_RECORD, Unreadable
 
 SEPARATORS = ",\t;"
 NO_UNIT = ("", "-", "1")
@@ -137,6 +137,7 @@ def best_header(
 
     It is the first row with two ``known`` headings, or else with most words.
     """
+    csv.field_size_limit(LONGEST_RECORD)
     counts, words = [(0, 0, 0)], [-1]
     with suppress(csv.Error):
         rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))

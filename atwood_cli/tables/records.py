@@ -11,9 +11,8 @@ from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..numbers.text import counted, in_quotes
-from . import sources
 from .headings import SEPARATORS, Heading, best_header
-from .sources import LONGEST_RECORD, TOO_LONG, Unreadable, whole_lines
+from .sources import Unreadable, whole_lines
 
 if TYPE_CHECKING:
     import polars as pl
@@ -23,16 +22,8 @@ MOST_LINES = 50
 UNREADABLE = "unreadable"
 """The member that has the text of a line of NDJSON that cannot be read."""
 BYTE_ORDER_MARK = "\ufeff"
-STRAY_RETURN = "new-line"
-"""The word by which `csv` means a carriage return without a line feed."""
-ERRORS_OF_CSV = {
-    "end of data": "has a quotation mark that is left open, or the file is truncated",
-    "limit": f"{TOO_LONG}; is a quotation mark left open?",
-    STRAY_RETURN: "has a carriage return without a line feed; save it with line feeds, or put its cell in"
-    " quotation marks",
-    "": 'has a quotation mark out of place; write it "like ""this"""',
-}
-"""What is wrong with a row, by a word in the error of `csv`."""
+QUOTATION = 'has a quotation mark that is left open or out of place; write it "like ""this"""'
+STRAY_RETURN = "has a carriage return without a line feed; save it with line feeds"
 
 
 class Piece(NamedTuple):
@@ -48,6 +39,45 @@ class Piece(NamedTuple):
     size: int
 
 
+# CSV
+
+
+def records_of(
+    text: str, separator: str, line: int = 1, may_go_on: bool = False
+) -> Iterator[tuple[int, str, list[str]]]:
+    """Yield the rows of CSV that are not blank: the number of the first line, the text, and the cells.
+
+    ``line`` is the number of the text's first line. If the text ``may_go_on`` and ends within a row, this has
+    no cells. Raises Unreadable.
+    """
+    taken: list[str] = []
+
+    def lines() -> Iterator[str]:
+        for text_of_line in StringIO(text, newline="\n"):
+            taken.append(text_of_line)
+            yield text_of_line
+
+    try:
+        for cells in csv.reader(lines(), delimiter=separator, strict=True):
+            record = "".join(taken)
+            if "\r\r" in record[-3:]:  # csv would take both for line ends
+                raise csv.Error("new-line")
+            if record.strip() or len(cells) > 1:
+                yield line, record, cells
+            line += len(taken)
+            taken.clear()
+    except csv.Error as error:
+        if may_go_on and "end of data" in str(error):
+            yield line, "".join(taken), []
+        else:
+            raise cannot_split(line, STRAY_RETURN if "new-line" in str(error) else QUOTATION) from None
+
+
+def cannot_split(line: int, why: str = QUOTATION) -> Unreadable:
+    """Return the error for the row that begins in that line, and cannot be split into cells."""
+    return Unreadable(f"the row that begins in line {line} {why}")
+
+
 class Csv:
     """A table of cells with a separator between them, under a header.
 
@@ -57,29 +87,26 @@ class Csv:
 
     def __init__(self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]]):
         """Read the header by the separator that makes most ``known`` columns, then most columns."""
-        csv.field_size_limit(LONGEST_RECORD)
         self._texts = map(_decoded, whole_lines(blocks, is_csv=True))
-        text = next(self._texts, "")
-        mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
-        text = text.removeprefix(BYTE_ORDER_MARK)
-        while text.count('"') % 2 and len(text) < LONGEST_RECORD and (more := next(self._texts, "")):
-            text += more  # the header may have line ends
-        self._text, self._line = _lines(text), 1
-        self.separator = max(SEPARATORS, key=lambda mark: best_header(text, mark, known))
-        _, header, self.columns = next(self._records(), (1, "", []))
-        if not header:
-            raise Unreadable("it is empty")
+        text, header, self.columns = "", "", list[str]()
+        while not self.columns and (more := next(self._texts, "")):  # the header may have line ends
+            text += more
+            mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
+            bare = text.removeprefix(BYTE_ORDER_MARK)
+            self.separator = max(SEPARATORS, key=lambda mark: best_header(bare, mark, known))
+            line, header, self.columns = next(records_of(bare, self.separator, 1, True), (1, "", []))
+        if not self.columns:
+            raise cannot_split(line) if header else Unreadable("it is empty")
+        above, _, self._text = bare.partition(header)
+        self._line = 1 + above.count("\n") + header.count("\n")
         self.header = mark + header.rstrip("\r\n")
         self.line_end = "\r\n" if header.endswith("\r\n") else "\n"
 
     def pieces(self, headings: Sequence[Heading]) -> Iterator[Piece]:
         """Yield the records below the header. Raises Unreadable."""
-        while text := self._text.read() or next(self._texts, ""):
-            if piece := self._in_bulk(text, headings):
-                self._line += len(piece.texts)
-            else:
-                self._text = _lines(text)
-                piece = self._by_csv(headings)
+        while text := self._text or next(self._texts, ""):
+            self._text = ""
+            piece = self._in_bulk(text, headings) or self._by_csv(text, headings)
             if len(piece.texts):
                 yield piece
 
@@ -87,67 +114,43 @@ class Csv:
         """Return the records of a text if all of them are plain, else None."""
         import polars as pl
 
-        if '"' in text or ("\r" in text and text.count("\r") > text.count("\r\n")):
+        width = len(self.columns)
+        if '"' in text or width == 1 or text.count("\r") > text.count("\r\n"):
             return None
         lines = pl.Series([text.removesuffix("\n")]).str.split("\n").explode().str.strip_suffix("\r")
         cells = lines.str.split(self.separator)
-        if not (cells.list.len() == len(self.columns)).all():
+        if not (cells.list.len() == width).all():
             return None
+        self._line += len(lines)
         frame = pl.DataFrame({heading.name: cells.list.get(heading.place) for heading in headings})
         return Piece(lines, frame, {}, len(text))
 
-    def _by_csv(self, headings: Sequence[Heading]) -> Piece:
-        """Return the records from here to the first that ends where a text ends, or to the end of a block."""
+    def _by_csv(self, text: str, headings: Sequence[Heading]) -> Piece:
+        """Return the records of a text; one that is not complete is left for the next piece."""
         import polars as pl
 
         width = len(self.columns)
         texts: list[str] = []
         rows: list[list[str]] = []
         errors: dict[int, str] = {}
-        size = 0
-        for line, record, cells in self._records():
-            text, lacking = record.rstrip("\r\n"), width - len(cells)
+        rest = ""
+        for line, record, cells in records_of(text, self.separator, self._line, True):
+            if not cells:
+                if not (more := next(self._texts, "")):
+                    raise cannot_split(line)
+                rest, self._text = record, record + more
+                break
+            bare, lacking = record.rstrip("\r\n"), width - len(cells)
             if error := self._error_of(line, cells):
                 errors[len(texts)] = error
             if lacking < 0:  # the last cell takes the rest, so that results stand in their columns
-                text = self._written([*cells[: width - 1], self.separator.join(cells[width - 1 :])])
-            texts.append(text + self.separator * lacking)
+                bare = self._written([*cells[: width - 1], self.separator.join(cells[width - 1 :])])
+            texts.append(bare + self.separator * lacking)
             cells += [""] * lacking
             rows.append([cells[heading.place] for heading in headings])
-            size += len(record)
-            if size > sources.BLOCK_BYTES:
-                break
+        self._line += text.count("\n") - rest.count("\n")
         frame = pl.DataFrame(rows, [(heading.name, pl.String) for heading in headings], orient="row")
-        return Piece(pl.Series(texts, dtype=pl.String), frame, errors, size)
-
-    def _records(self) -> Iterator[tuple[int, str, list[str]]]:
-        """Yield rows that are not blank up to the first that ends where a text ends.
-
-        Each has the number of its first line, its text and its cells. Raises Unreadable.
-        """
-        taken: list[str] = []
-
-        def lines() -> Iterator[str]:
-            while True:
-                for line in self._text:
-                    taken.append(line)
-                    yield line
-                if not taken or not (text := next(self._texts, "")):
-                    return
-                self._text = _lines(text)
-
-        try:
-            for cells in csv.reader(lines(), delimiter=self.separator, strict=True):
-                line, record = self._line, "".join(taken)
-                if "\r\r" in record[-3:]:  # csv would take both for line ends
-                    raise csv.Error(STRAY_RETURN)
-                self._line += len(taken)
-                taken.clear()
-                if record.strip() or len(cells) > 1:
-                    yield line, record, cells
-        except csv.Error as error:
-            why = next(why for word, why in ERRORS_OF_CSV.items() if word in str(error))
-            raise Unreadable(f"the row that begins in line {self._line} {why}") from None
+        return Piece(pl.Series(texts, dtype=pl.String), frame, errors, len(text) - len(rest))
 
     def _error_of(self, line: int, cells: Sequence[str]) -> str | None:
         """Say what is wrong with the row that begins in that line; None if nothing is."""
@@ -157,12 +160,7 @@ class Csv:
                 return f"the cell that begins in line {line} has {ends + 1} lines, and {most}"
             line += ends
         width = len(self.columns)
-        if len(cells) == width:
-            return None
-        error = f"the row has {counted(len(cells), 'cell')}; the header has {width}"
-        if len(cells) > width and self.separator == ",":
-            error += "; is there a decimal comma (write a point), or a comma at the end of the row?"
-        return error
+        return None if len(cells) == width else f"the row {wrong_width(len(cells), width, self.separator)}"
 
     def _written(self, cells: Sequence[str]) -> str:
         """Return cells as a row of the table, in quotation marks if they need them."""
@@ -170,6 +168,14 @@ class Csv:
         # Without a line end of its own, the writer would not quote the line breaks of cells.
         csv.writer(buffer, delimiter=self.separator).writerow(cells)
         return buffer.getvalue().removesuffix("\r\n")
+
+
+def wrong_width(cells: int, width: int, separator: str) -> str:
+    """Say that a row has more or fewer cells than the header, with the usual cause."""
+    hint = ""
+    if cells > width and separator == ",":
+        hint = "; is there a decimal comma (write a point), or a comma at the end of the row?"
+    return f"has {counted(cells, 'cell')}; the header has {width}{hint}"
 
 
 def _decoded(text: bytes) -> str:
@@ -180,11 +186,6 @@ def _decoded(text: bytes) -> str:
         before = in_quotes(text[: error.start].decode().rpartition("\n")[2][-20:])
         byte = f"byte 0x{text[error.start]:02x} behind {before}"
         raise Unreadable(f"it is not UTF-8: {byte}; save it as UTF-8") from None
-
-
-def _lines(text: str) -> StringIO:
-    """Return a text to read by lines, which end with a line feed."""
-    return StringIO(text, newline="\n")
 
 
 # NDJSON
@@ -260,7 +261,9 @@ def _no_number(word: str) -> str:
 
 
 class _Number(str):
-    """A number of JSON, as it stands."""
+    """A number of JSON, as it stands, also within a list or an object."""
+
+    __repr__ = str.__str__
 
 
 _DECODER = json.JSONDecoder(
@@ -270,24 +273,8 @@ _COMPACT = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"))
 
 
 def _text(value: object) -> str | None:
-    """Return a value as a cell, one that is neither a text nor null as JSON."""
+    """Return a value as a cell, None for null."""
     if value is None:
         return None
-    try:
-        text = value if isinstance(value, str) else _in_json(value)
-    except RecursionError:
-        text = "[...]"
+    text = str(value).lower() if isinstance(value, bool) else str(value)
     return text.encode(errors="backslashreplace").decode()  # UTF-8 has no halves of surrogate pairs
-
-
-def _in_json(value: object) -> str:
-    """Return a value as JSON, in which numbers stand as they were read."""
-    match value:
-        case _Number():
-            return value
-        case list():
-            return f"[{','.join(map(_in_json, value))}]"
-        case dict():
-            members = (f"{_COMPACT.encode(key)}:{_in_json(item)}" for key, item in value.items())
-            return f"{{{','.join(members)}}}"
-    return _COMPACT.encode(value)

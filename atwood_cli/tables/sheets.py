@@ -1,16 +1,15 @@
 """A table as spreadsheets, people and Python have it: its headings found, its cells as texts."""
 
-import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from functools import partial
-from io import StringIO
 from os import PathLike, fspath
 from typing import Any, NamedTuple
 
 from ..numbers.text import in_quotes, without_blanks
 from .headings import SEPARATORS, Vocabulary, best_header, recognised
+from .records import records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
 from .workbooks import MOST_BYTES, opened_table
 
@@ -84,7 +83,8 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
         remarks.append("text in Windows-1252")
 
     known = partial(recognised, vocabulary=vocabulary, named=named)
-    lines = re.sub(r'\A"?sep=[,;\t]"?\r?\n', "", text, flags=re.IGNORECASE).split("\n")
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    lines = re.sub(r'\A"?sep=[,;\t]"?\n', "", text, flags=re.IGNORECASE).split("\n")
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = re.sub(r"^\s*#[# \t]*(?![,;])", "", lines[i])  # NumPy writes headings so; # may be one, too
         is_header = max(best_header(bare, mark, known)[0] for mark in SEPARATORS) > 1
@@ -101,19 +101,12 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
 
 def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[str]]]:
     """Return the headings in that row of a text, and the rows below. Raises Unreadable."""
-    reader = csv.reader(StringIO(text, newline=""), delimiter=separator, strict=True)
-    try:
-        columns, *rows = [row for row in reader if any(row)][start:]
-    except csv.Error as error:
-        raise Unreadable(f"line {reader.line_num}: {error}") from None
-    except ValueError:
-        raise Unreadable("it is empty") from None
+    columns, *rows = [cells for *_, cells in records_of(text, separator) if any(cells)][start:] or [[]]
+    if not columns:
+        raise Unreadable("it is empty")
     rows = [row for row in rows if "".join(row).strip()]
     for number, row in enumerate(rows, 1):
         if any(map(str.strip, [*columns[len(row) :], *row[len(columns) :]])):
-            hint = ""
-            if separator == "," and len(row) > len(columns):
-                hint = "; is there a decimal comma (write a point), or one at its end?"
-            raise Unreadable(f"row {number} has {len(row)} cells, and the header {len(columns)}{hint}")
+            raise Unreadable(f"row {number} {wrong_width(len(row), len(columns), separator)}")
         row[len(columns) :] = [""] * (len(columns) - len(row))
     return [*map(without_blanks, columns)], rows
