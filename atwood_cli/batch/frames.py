@@ -89,7 +89,7 @@ def _solve_pandas(frame: Any, wanted: Wanted) -> Any:
         cells[heading.name] = [
             None if absent else cell if of_numbers else str(cell) for cell, absent in pairs
         ]
-    results = solve_cells(pl.DataFrame(cells), columns, wanted, Tally(set()))
+    results = solve_cells(pl.DataFrame(cells), columns, wanted, Tally())
     return frame.assign(
         **{x.name: x.to_numpy() if x.dtype.is_float() else x.to_list() for x in results.iter_columns()}
     )
@@ -100,4 +100,4 @@ def with_results(
 ) -> "pl.DataFrame":
     """Return a frame of scenes with their results. Raises Unreadable for a column that holds no numbers."""
     cells = frame.select(frame[heading.column].alias(heading.name) for heading in columns.headings)
-    return frame.hstack(solve_cells(cells, columns, wanted, tally or Tally(set())))
+    return frame.hstack(solve_cells(cells, columns, wanted, tally or Tally()))

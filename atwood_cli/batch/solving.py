@@ -2,32 +2,31 @@
 
 import re
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from functools import cache, partial
-from math import inf, isfinite
+from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
-from ..explain.conditions import Condition, failure
+from ..explain.conditions import Condition, Failures, failures_of
 from ..explain.messages import reasons_in
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
-from ..reading.inputs import OTHER_NAMES, read_plain, read_scene, read_value
+from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly, read_value
 from ..solver.answers import Answers
-from ..solver.quantities import NAMES, REGIMES
-from ..solver.scene import INPUTS, MASSES, Angle, InTerms, SceneError, parameter_of
+from ..solver.quantities import NAMES, REGIMES, STANDARD
+from ..solver.scene import INPUTS, MASSES, Angle, Input, InTerms, Scene, SceneError
 from ..tables.headings import (
     EMPTY,
     MASS_NAMES,
-    OWN_UNIT,
     Heading,
     Vocabulary,
     divisions,
+    has_unit,
     is_unit,
     listed,
-    pointed,
+    read_cell,
     read_headings,
     refused,
     unit_within,
@@ -125,23 +124,20 @@ def _meant(column: str) -> str | None:
 class Tally:
     """The counts of a run, and the results that its rows lack."""
 
-    missing: set[str]
-    """The results that no row has had."""
+    asked: Collection[str] = ()
+    """The results that the user names. Only of these it is said why they are missing, if there are any."""
+    missing: set[str] = field(init=False)
+    """Those that no row has had."""
     rows: int = 0
     regimes: Counter[str] = field(default_factory=Counter)
     errors: int = 0
     first_error: str = ""
     beyond: int = 0
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
-    failures: dict[str, str] = field(default_factory=dict)
-    """What is expected and fails, with the first row in which it does."""
-    failed: int = 0
+    failures: Failures = field(default_factory=Failures)
 
-    def fail(self, row: int, failures: Mapping[str, str]) -> None:
-        """Count one of the next rows by what fails in it."""
-        self.failed += bool(failures)
-        for typed, why in failures.items():
-            self.failures.setdefault(typed, f"in row {self.rows + row + 1}: {why}")
+    def __post_init__(self) -> None:
+        self.missing = {*self.asked}
 
     def add(self, results: "pl.DataFrame", regimes: "pl.Series") -> None:
         """Count the next rows by their results."""
@@ -161,11 +157,12 @@ class Tally:
         if self.beyond:
             counts.append(f"{counted(self.beyond, 'value')} beyond the range of doubles left empty")
         lines = [f"{counted(self.rows, 'row')}: {'; '.join(counts)}."]
-        ranked = sorted(self.reasons.items(), key=lambda item: (-item[1], NAMES.index(item[0][0])))
+        explained = self.asked or STANDARD[:4]  # the regime and the motion
+        reasons = [(key, count) for key, count in self.reasons.items() if key[0] in explained]
+        ranked = sorted(reasons, key=lambda item: (-item[1], NAMES.index(item[0][0])))
         lines += reasons_in(dict(ranked), self.rows)
         lines += [f"first error, in {self.first_error}"] if self.errors else []
-        lines += self.failures.values()
-        return [*lines, f"{self.failed} of {counted(self.rows, 'row')} failed"] if self.failed else lines
+        return [*lines, *self.failures.lines(self.rows)]
 
 
 def solve_cells(
@@ -180,75 +177,59 @@ def solve_cells(
 
     from ..arrays import VALID, solve_and_count
 
-    shared = {name: _plain(name, text) for name, text in wanted.given.items()}
-    doubles, errors, single = _doubles(cells, columns)
+    cells = cells.with_columns(pl.selectors.decimal().cast(pl.String))
+    shared = {name: _double(Heading(0, name, name), False, text) for name, text in wanted.given.items()}
+    doubles, alone = _doubles(cells, columns)
     if None in shared.values():
-        single = {*range(cells.height)}
-    errors |= unread
+        alone = {*range(cells.height)}
     rows = pl.int_range(cells.height, eager=True)
-    if errors or single:
-        rows = rows.filter(~rows.is_in([*errors, *single]))
+    if unread or alone:
+        rows = rows.filter(~rows.is_in([*unread, *alone]))
         doubles = doubles[rows]
     given: Any = doubles.to_dict() | shared
     if "m1" in shared:  # perhaps all inputs are single numbers
         given["m1"] = pl.repeat(shared["m1"], len(rows), dtype=pl.Float64, eager=True)
     terms = {heading.name: heading.terms for heading in columns.headings if heading.terms}
     solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names], terms)
-    single |= {*rows.filter(pl.Series(solved.pop("status")) != VALID)}
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
-    values = pl.DataFrame({**solved, "regime": regimes})
-    places = pl.repeat(None, cells.height, dtype=pl.Int64, eager=True).scatter(rows, range(len(rows)))
-    solve_row = cache(partial(_solve_row, columns, wanted))  # as many rows may be alike
+    values = pl.DataFrame({**solved, "regime": regimes, "row": rows})
+    values = values.with_columns(pl.lit(None, pl.String).alias(ERROR))
+    alone |= {*values.filter(pl.col("status") != VALID)["row"]}
+    values = values.filter(pl.col("status") == VALID).drop("status")
+    answers_of = partial(_answers, columns, {x: read_exactly(x, wanted.given.get(x)) for x in INPUTS})
+    solve_row = cache(partial(_solve_row, answers_of, wanted.names))  # as many rows may be alike
     records = list[Mapping[str, Any]]()
-    for row in sorted(single - errors.keys()):
-        outcome = solve_row(cells.row(row))
-        if isinstance(outcome, str):
-            errors[row] = outcome
-            places[row] = None
-        else:
-            places[row] = values.height + len(records)
-            records.append(outcome[0])
-            reasons.update(outcome[1])
-    if records or len(rows) < cells.height:
-        values = pl.concat([values, pl.DataFrame(records, values.schema)]).select(pl.all().gather(places))
+    for row in sorted({*unread, *alone}):
+        record, lacking = ({ERROR: unread[row]}, ()) if row in unread else solve_row(cells.row(row))
+        records.append({"row": row, **record})
+        reasons.update(lacking)
+    if records:
+        values = pl.concat([values, pl.DataFrame(records, values.schema)]).sort("row")
     numbers = pl.selectors.float()
     tally.beyond += sum(map(sum, values.select(numbers.is_infinite().sum()).iter_rows()))
-    values = values.select(pl.when(numbers.is_finite()).then(numbers).name.keep(), "regime")
+    values = values.select(pl.when(numbers.is_finite()).then(numbers).name.keep(), "regime", ERROR)
     if wanted.digits:
         to_digits = f"{{:.{wanted.digits - 1}e}}".format
         values = values.with_columns(numbers.map_elements(lambda x: float(to_digits(x)), pl.Float64))
-    error = pl.repeat(None, cells.height, dtype=pl.String, eager=True)
-    error = error.scatter(list(errors), list(errors.values()))
-    results = values.select(*wanted.names, error.alias(ERROR))
-    failures = cache(partial(_failures, columns, wanted))
-    for row, given_cells in enumerate(cells.iter_rows() if wanted.conditions else ()):
-        if row not in errors:
-            tally.fail(row, failures(given_cells))
-    tally.reasons.update({key: count for key, count in reasons.items() if key[0] in wanted.names})
+    if wanted.conditions:
+        failures = cache(lambda given_cells: failures_of(answers_of(given_cells), wanted.conditions))
+        for row, error in enumerate(values[ERROR]):
+            if error is None:
+                tally.failures.add(failures(cells.row(row)), f"in row {tally.rows + row + 1}")
+    tally.reasons.update(reasons)
+    results = values.select(*wanted.names, ERROR)
     tally.add(results, values["regime"])
     return results
 
 
-def _plain(name: str, text: str) -> float | None:
-    """Return the double nearest to an input that all rows share; None if rows are to be solved one by one.
+def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame, set[int]]":
+    """Return the inputs by name, null if a cell is empty, and the rows to solve one by one.
 
-    Raises SceneError.
-    """
-    value = read_value(name, text)
-    if isinstance(value, Angle | InTerms):
-        value = value.number if value.unit == "°" else None
-    return None if value is None else float(value) if value == inf else to_double(value)
-
-
-def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame, dict[int, str], set[int]]":
-    """Return the inputs by name, null if a cell is empty or no plain number.
-
-    With them come the first error of each bad row, and the rows with a cell that may have a unit.
+    These have a cell with a unit of its own, or one that is no double.
     """
     import polars as pl
 
     inputs: dict[str, pl.Series] = {}
-    errors: dict[int, str] = {}
     single = set[int]()
     for heading, column in zip(columns.headings, cells, strict=True):
         if column.dtype in (pl.Categorical, pl.Enum):
@@ -260,18 +241,13 @@ def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame
             column = column.set(column.is_in(EMPTY), None)
         doubles = _in_bulk(column, heading, columns.comma)
         rows = (column.is_not_null() & doubles.is_null()).arg_true()
-        exact: list[float | None] = []
-        for row, cell in zip(rows, column[rows], strict=True):
-            try:
-                exact.append(_double(heading, cell, columns.comma))
-            except SceneError as error:
-                exact.append(None)
-                if isinstance(cell, str) and OWN_UNIT.search(cell):
-                    single.add(row)
-                else:
-                    errors.setdefault(row, str(error))
-        inputs[heading.name] = doubles.scatter(rows, pl.Series(exact, dtype=pl.Float64))
-    return pl.DataFrame(inputs), errors, single
+        double_of = cache(partial(_double, heading._replace(place=0), columns.comma))
+        others = [double_of(cell) for cell in column[rows]]
+        for row, cell, double in zip(rows, column[rows], others, strict=True):
+            if double is None or (double != inf and has_unit(cell)):
+                single.add(row)
+        inputs[heading.name] = doubles.scatter(rows, pl.Series(others, dtype=pl.Float64))
+    return pl.DataFrame(inputs), single
 
 
 def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
@@ -301,50 +277,48 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
     return doubles.set(~doubles.is_finite(), None)
 
 
-def _double(heading: Heading, cell: str | float, comma: bool) -> float:
-    """Return a cell as the double nearest to it, in SI units. Raises SceneError."""
-    name = heading.name
-    if isinstance(cell, str):
-        exact = read_plain(name, cell, pointed(name, cell, comma))
-    else:
-        read_value(name, cell)  # raises if it is NaN, or infinite and must not be
-        exact = Fraction(cell) if isfinite(cell) else inf
-    if exact == inf and parameter_of(name).may_be_infinite:
-        return inf
-    value = to_double(Fraction(exact) * heading.factor)
-    if abs(value) == inf or (exact and not value):
-        raise SceneError(name, cell, "is beyond the range of doubles, 4.9e-324 to 1.8e308")
-    return value
+def _double(heading: Heading, comma: bool, cell: str | float) -> float | None:
+    """Return a cell as the double nearest to it, in SI units or degrees; None if its row is solved alone.
 
-
-def _failures(columns: ReadColumns, wanted: Wanted, row: Sequence[Any]) -> Mapping[str, str]:
-    """Return what is expected of a row and fails, decided as `solve` does, with what holds instead."""
-    answers = _answers(columns, wanted, row)
-    return {x.typed: why for x in wanted.conditions if (why := failure(answers, x))}
+    It may be no double, no number, uncertain, in radians, or in other terms than those of the heading.
+    """
+    try:
+        read = read_cell(heading, [cell], comma)
+    except SceneError:
+        return None
+    if read is None or read.uncertainty:
+        return None
+    value: Any = read.value
+    if isinstance(value, InTerms):
+        value = value.number if value.terms == heading.terms else None
+    elif isinstance(value, Angle):
+        value = value.number if value.unit == "°" else None
+    if value is None or value == inf:
+        return None if value is None else inf
+    double = to_double(value)
+    return None if abs(double) == inf or (value and not double) else double
 
 
 def _solve_row(
-    columns: ReadColumns, wanted: Wanted, row: Sequence[Any]
-) -> tuple[dict[str, Any], set[tuple[str, str]]] | str:
-    """Return the results of a row and the reasons of those that it lacks, or its error."""
+    answers_of: Callable[[Sequence[Any]], Answers], names: Sequence[str], cells: Sequence[Any]
+) -> tuple[dict[str, Any], Iterable[tuple[str, str]]]:
+    """Return the results of a row, or its error, and the reasons of those that it lacks."""
     try:
-        answers = _answers(columns, wanted, row)
+        answers = answers_of(cells)
     except SceneError as error:
-        return str(error)
-    each = {name: answers.answer(name) for name in wanted.names if name != "regime"}
+        return {ERROR: str(error)}, ()
+    each = {name: answers.answer(name) for name in names if name != "regime"}
     reasons = {(name, answer.reason) for name, answer in each.items() if answer.reason}
     values = {"regime": answers.decided.regime} | {name: answer.value for name, answer in each.items()}
     return values, {*reasons, *answers.decided.assumptions.items()}
 
 
-def _answers(columns: ReadColumns, wanted: Wanted, row: Sequence[Any]) -> Answers:
+def _answers(columns: ReadColumns, shared: Mapping[str, Input], cells: Sequence[Any]) -> Answers:
     """Solve a row, with what all rows share, as `solve` does. Raises SceneError."""
-    cells: dict[str, Any] = {**wanted.given}
-    for heading, cell in zip(columns.headings, row, strict=True):
-        text = pointed(heading.name, cell, columns.comma) if isinstance(cell, str) else cell
-        if text is None or text in EMPTY:
-            continue
-        if heading.unit and not (isinstance(text, str) and OWN_UNIT.search(text)):
-            text = f"{text}{heading.unit}"
-        cells[heading.name] = text if isinstance(text, str) else float(text)
-    return Answers(read_scene(cells))
+    inputs = {**shared}
+    for heading, cell in zip(columns.headings, cells, strict=True):
+        if read := read_cell(heading._replace(place=0), [cell], columns.comma):
+            if read.uncertainty:
+                raise SceneError(heading.name, cell, NO_UNCERTAINTY)
+            inputs[heading.name] = read
+    return Answers(Scene.of(inputs))

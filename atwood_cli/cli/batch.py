@@ -7,7 +7,8 @@ import typer
 
 from ..explain.conditions import read_condition
 from ..numbers.text import counted
-from ..output.text import FORMS, say
+from ..output.files import STDOUT
+from ..output.text import FORMS, say, say_written
 from ..reading.inputs import read_whole
 from ..reading.names import read_names
 from ..solver.quantities import STANDARD
@@ -99,26 +100,28 @@ def batch(
     from ..batch.solving import VOCABULARY, Tally, Wanted
     from ..tables.headings import read_named
 
-    names = list(dict.fromkeys(read_names("only", only or STANDARD)))
+    asked = list(dict.fromkeys(read_names("only", only or [])))
     kind = read_format(from_, table)
     if markdown and kind not in ("csv", "tsv"):
         raise SceneError("markdown", None, "takes a table of CSV or .tsv, or a workbook")
     check_format(output, "md" if markdown else kind)
-    if force and output == "-":
+    if force and output == STDOUT:
         raise SceneError("force", None, "needs --output")
     conditions = [*map(read_condition, expect or [])]
     shared = {name: value for name, value in given.items() if value is not None}
     rounded_to = None if digits is None else read_whole("digits", digits, 1, 17)
     named = read_named(column or (), VOCABULARY)
-    wanted = Wanted(names, label or (), named, conditions, shared, rounded_to)
+    wanted = Wanted(asked or STANDARD, label or (), named, conditions, shared, rounded_to)
     job = Job(table, kind, output, force, wanted, sheet, markdown)
-    tally = Tally(set(names))
+    tally = Tally(asked)
     try:
         remarks = run_batch(job, tally)
     except KeyboardInterrupt:
         if tally.rows:
             say(f"stopped after {counted(tally.rows, 'row')}")
         raise
+    if output != STDOUT:
+        say_written(output)
     say(*remarks, *tally.lines())
-    missing = only and tally.missing and tally.rows > tally.errors
-    return COULD_NOT if missing or tally.failed or (tally.errors and not allow_errors) else DONE
+    missing = tally.missing and tally.rows > tally.errors
+    return COULD_NOT if missing or tally.failures.rows or (tally.errors and not allow_errors) else DONE

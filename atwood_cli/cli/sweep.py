@@ -56,6 +56,5 @@ def sweep(
             say(f"stopped after {swept_page.done} of {counted(swept.total, 'row')}")
         raise
     say(*aside or [f"{name} has no value in any row" for name in names if name in swept_page.missing])
-    if swept_page.failures:
-        say(*swept_page.failures.values(), f"{swept_page.failed} of {counted(swept.total, 'row')} failed")
-    return COULD_NOT if swept_page.missing or swept_page.failures else DONE
+    say(*swept_page.failures.lines(swept.total))
+    return COULD_NOT if swept_page.missing or swept_page.failures.rows else DONE

@@ -2,7 +2,7 @@
 
 import operator
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ from ..numbers.digits import (
     rounding_apart_from,
     to_digits,
 )
-from ..numbers.text import in_quotes
+from ..numbers.text import counted, in_quotes
 from ..reading.names import NAMES_BY_SYMBOL, read_name
 from ..reading.units import GRAVITY, Malformed, TypedNumber, read_number
 from ..solver.answers import TOO_SMALL, Answers
@@ -70,6 +70,29 @@ def read_condition(typed: str) -> Condition:
         rule = "compares with an uncertain number, which only == takes: it holds within the uncertainty"
         raise SceneError("expect", typed, rule)
     return Condition(typed.strip(), name, sign, value)
+
+
+def failures_of(answers: Answers, conditions: Iterable[Condition]) -> dict[str, str]:
+    """Return the conditions that fail, as typed, each with what holds instead."""
+    return {condition.typed: why for condition in conditions if (why := failure(answers, condition))}
+
+
+class Failures:
+    """The rows that are not as expected: how many, and the first that fails each condition."""
+
+    def __init__(self) -> None:
+        self.rows = 0
+        self.first: dict[str, str] = {}
+
+    def add(self, failures: Mapping[str, str], place: str) -> None:
+        """Count a row by what fails in it, if anything does."""
+        self.rows += bool(failures)
+        for typed, why in failures.items():
+            self.first.setdefault(typed, f"{place}: {why}")
+
+    def lines(self, total: int) -> list[str]:
+        """Return what to say of all rows."""
+        return [*self.first.values(), f"{self.rows} of {counted(total, 'row')} failed"] if self.rows else []
 
 
 def failure(answers: Answers, expected: Condition) -> str:

@@ -78,7 +78,7 @@ def read_input(name: str, given: Given | None, signed: bool = False) -> Input:
     if given is None or is_missing(given):
         return _default(name)
     if isinstance(given, str):
-        number = _read_text(name, given, given)
+        number = _read_text(name, given)
     elif isinstance(given, Angle) and name == "wrap":
         number = TypedNumber(_exact_number(name, given.number), given.unit)
     else:
@@ -104,13 +104,6 @@ def read_exactly(name: str, given: Given | None) -> Input:
 def read_value(name: str, given: Given | None) -> Any:
     """Read the exact value of one input, as `Input` has it. Raises SceneError."""
     return read_exactly(name, given).value
-
-
-def read_plain(name: str, given: str, text: str) -> Fraction | float:
-    """Read the number in a cell of a table, as ``text``, which has no unit or name. Raises SceneError."""
-    if is_uncertain(text):
-        raise SceneError(name, given, NO_UNCERTAINTY)
-    return _read_text(name, given, text, INPUTS[name]._replace(dimension=None, terms=(), names={})).value
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:
@@ -141,9 +134,9 @@ def _checked(name: str, given: Given, number: TypedNumber, signed: bool) -> Any:
     return InTerms(value, terms) if terms else value
 
 
-def _read_text(name: str, given: Given, text: str, parameter: Parameter | None = None) -> TypedNumber:
-    """Read the number in a text that is all or part of what was given; errors show all. Raises SceneError."""
-    parameter = parameter or parameter_of(name)
+def _read_text(name: str, text: str) -> TypedNumber:
+    """Read the number in a text. Raises SceneError."""
+    parameter = parameter_of(name)
     word = without_blanks(text).lower()
     if parameter.may_be_infinite and word == "inf":
         return TypedNumber(inf)
@@ -159,7 +152,7 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
         rule = str(error)
         if "," in text and is_uncertain(text):
             rule = f"has a comma; write {shortened(text.replace(',', '.'))}"
-    raise SceneError(name, given, rule)
+    raise SceneError(name, text, rule)
 
 
 NO_UNCERTAINTY = "has an uncertainty, which only solve and fit take; give the value alone"

@@ -14,7 +14,7 @@ from math import inf, prod
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..explain.conditions import Condition, failure
+from ..explain.conditions import Condition, failures_of
 from ..numbers.digits import (
     DOUBLE_DIGITS,
     SHOWN_DIGITS,
@@ -340,5 +340,5 @@ def solve_rows(
         }
         reasons = {name: answer.reason for name, answer in by_name.items() if answer.reason}
         decided, values = answers.decided, {name: answer.value for name, answer in by_name.items()}
-        failures = {x.typed: why for x in conditions if (why := failure(answers, x))}
+        failures = failures_of(answers, conditions)
         yield Row(place, decided.regime, decided.mu_assumed, values, reasons, failures)

@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from fractions import Fraction
 from itertools import groupby
 
-from ..explain.conditions import Condition
+from ..explain.conditions import Condition, Failures
 from ..explain.messages import on_units, reasons_in, unmarked
 from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
 from ..output.page import Page, aligned, progress
@@ -27,9 +27,7 @@ class SweepPage:
         self, sweep: Sweep, names: Sequence[str], digits: int | None, conditions: Sequence[Condition] = ()
     ) -> None:
         self.sweep, self.digits, self.conditions = sweep, digits, conditions
-        self.failures: dict[str, str] = {}
-        """What is expected and fails, with the first row in which it does."""
-        self.failed = 0
+        self.failures = Failures()
         self.asked = set(names)
         self.missing = set(names)
         """The quantities that were asked for and that no row has."""
@@ -53,9 +51,8 @@ class SweepPage:
                 self.reasons.update(row.reasons.items())
                 self.assumed = [ASSUMED] if row.mu_assumed else self.assumed
                 self.missing = {name for name in self.missing if not cell(row.values[name])}
-                self.failed += bool(row.failures)
-                for typed, why in row.failures.items():
-                    self.failures.setdefault(typed, f"at {self.sweep.in_words(row.at)}: {why}")
+                if row.failures:
+                    self.failures.add(row.failures, f"at {self.sweep.in_words(row.at)}")
                 yield row
                 self.done += 1
 

@@ -15,13 +15,13 @@ from fractions import Fraction
 from io import StringIO
 from itertools import islice
 from shlex import quote
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from unicodedata import normalize
 
 from ..numbers.text import in_quotes, without_blanks
 from ..reading.inputs import read_input
 from ..reading.units import PERCENT, Malformed, read_unit, symbol_of, terms_of
-from ..solver.scene import Input, InTerms, SceneError, Terms, parameter_of
+from ..solver.scene import Angle, Input, InTerms, SceneError, Terms, parameter_of
 from .sources import LONGEST_RECORD, Unreadable
 
 SEPARATORS = ",\t;"
@@ -339,6 +339,11 @@ def decimal_commas_in(rows: Iterable[Sequence[str]], places: Collection[int], se
     return any(separator == ";" or not re.match(PART_THOUSANDS, cell) for cell in with_comma)
 
 
+def has_unit(cell: object) -> bool:
+    """Decide whether a cell has a unit of its own, or a name for a number."""
+    return isinstance(cell, str) and bool(OWN_UNIT.search(cell))
+
+
 def pointed(name: str, cell: str, comma: bool) -> str:
     """Return a cell with a decimal point, without blanks around it. Raises SceneError."""
     if comma and "." in cell:
@@ -346,23 +351,26 @@ def pointed(name: str, cell: str, comma: bool) -> str:
     return (cell.replace(",", ".") if comma else cell).strip()
 
 
-def read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:
+def read_cell(heading: Heading, row: Sequence[Any], comma: bool) -> Input | None:
     """Return the number in a column, exact and in SI units, with its uncertainty; None if the cell is empty.
 
     A unit in the cell goes before the unit of the heading. Raises SceneError.
     """
     cell = row[heading.place]
-    text = pointed(heading.name, cell, comma)
-    if text in EMPTY:
+    text = pointed(heading.name, cell, comma) if isinstance(cell, str) else cell
+    if text is None or text in EMPTY:
         return None
     try:
         value, uncertainty, _ = read_input(heading.name, text)
     except SceneError as error:
         raise SceneError(heading.name, cell, error.rule) from None
-    terms, factor = (None, ONE) if OWN_UNIT.search(text) else (heading.terms, heading.factor)
+    terms, factor = (None, ONE) if has_unit(text) else (heading.terms, heading.factor)
+    if isinstance(value, Angle):
+        return Input(value._replace(number=value.number * factor), uncertainty * factor, cell)
     if isinstance(value, InTerms):
         value, terms = value
-    value, uncertainty = value * factor, uncertainty * factor
+    if factor != 1:
+        value, uncertainty = value * factor, uncertainty and uncertainty * factor
     if heading.u and (u := row[heading.u.place].strip()) not in EMPTY:
         if uncertainty:
             raise SceneError(heading.u.column, u, f"is a second uncertainty, beside {in_quotes(cell)}")
@@ -384,4 +392,4 @@ def _read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool)
         raise SceneError(heading.column, cell, "is not an uncertainty; write it like 0.02 or 2%") from None
     if relative:
         return spread * abs(value)
-    return spread if OWN_UNIT.search(number) else spread * heading.factor
+    return spread if has_unit(number) else spread * heading.factor
