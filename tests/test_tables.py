@@ -85,8 +85,10 @@ def test_a_column_that_is_refused_may_pass_as_a_label(columns: str) -> None:
 
 
 DOUBTFUL = """
-M: Mass|pulley_mass|Pulley mass (g)|pulley mass, g|m|m_kg; mu: μ|µ|friction|MU; g: gravity|G; wrap: φ
-inertia: beta|Inertia; I: moment of inertia; R: radius|radius_cm|r cm; axle: Axle (N)|Axle_mN
+M: Mass|pulley_mass|Pulley mass (g)|pulley mass, g|m|m_kg|mass of the sheave; g: gravity|G|local gravity
+mu: μ|µ|friction|MU|coeff. of friction|f|f (-); mu_k: sliding friction; wrap: φ|contact angle (deg)|turns
+wrap: angle of wrap|wraps|alpha (deg)|θ; axle: Axle (N)|Axle_mN|friction in the bearing (N)
+inertia: beta|Inertia; I: moment of inertia|rotational inertia; R: radius|radius_cm|r cm|sheave radius
 """
 
 

@@ -15,10 +15,12 @@ from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly, read_value
 from ..solver.answers import Answers
+from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NAMES, REGIMES, STANDARD
-from ..solver.scene import INPUTS, MASSES, Angle, Input, InTerms, Scene, SceneError
+from ..solver.scene import INPUTS, MASSES, MEASURED, Angle, Input, InTerms, Scene, SceneError
 from ..tables.headings import (
     EMPTY,
+    LONGEST_HEADING,
     MASS_NAMES,
     Heading,
     Vocabulary,
@@ -39,7 +41,20 @@ if TYPE_CHECKING:
 ERROR = "error"
 VOCABULARY = Vocabulary(MASS_NAMES | {name.replace("_", ""): name for name in INPUTS})
 
-GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
+GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta", "α": "alpha", "θ": "theta"})
+DIAMETER = "diameter"
+LIKE_INPUTS = {
+    "axle": "(axle|bearing).*frict|frict.*(axle|bearing)",
+    "mu_k": "(kinetic|sliding|dynamic) (frict|coeff)",
+    "mu": r"frict|coeff|(?-i:^f\b)",
+    "wrap": r"wrap|contact|\bangle|\bturns?\b|^alpha\b|^theta\b",
+    DIAMETER: r"diameter|\bdia\b|(?-i:^D\b)",
+    "R": "radius",
+    "M": "(pulley|sheave).*(mass|weight)|(mass|weight).*(pulley|sheave)",
+    "I": "inertia",
+    "g": "gravity",
+}
+"""The inputs that headings may mean by a word or a first letter, as patterns; the first that fits counts."""
 LONG_CELL = 100
 """The characters up to which any text of a nonzero double is within the limits of digits and exponents."""
 
@@ -90,6 +105,8 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
     passed = {*labels, *(heading.column for heading in headings)}
     doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
     for column, name in doubtful.items():
+        if name == DIAMETER and "R" not in inputs:
+            raise refused(column, "may be a diameter, twice R; give R")
         if name in INPUTS and not (whole and name in inputs):  # in NDJSON, another row may lack the input
             has_unit = not INPUTS[name].unit or unit_within(column, Heading(0, column, name))
             typed = f"{name}{'' if has_unit else ' (UNIT)'}={column}"
@@ -101,20 +118,24 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
         way = " ".join(f"--column {mass}=HEADING" for mass in missing)
         way += f", or --{missing[0]} for all rows"
         raise Unreadable(f"{lacking} missing; there are {listed(columns)}", f"; or give {way}")
-    if measured := [column for column, name in doubtful.items() if name not in INPUTS]:
+    if measured := [column for column, name in doubtful.items() if name in MEASURED]:
         raise refused(measured[0], "has measurements, which only solve takes")
     not_read = [column for column in columns if column not in passed]
     return ReadColumns([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
 
 
 def _meant(column: str) -> str | None:
-    """Return the input that a heading may mean: in other letters, by another name or with a unit behind."""
+    """Return the input that a heading may mean: in other letters, by another name, with a unit behind, or by
+    a word in it.
+    """
     for word, unit, is_loose in divisions(without_blanks(column)):
         letters = normalize("NFKC", word).casefold().translate(GREEK_SPELLED)
         meant = OTHER_NAMES.get("_".join(re.findall("[0-9a-z]+", letters)))
         if meant and not (is_loose and not is_unit(unit, Heading(0, column, meant))):
             return meant
-    return None
+    letters = normalize("NFKC", column[:LONGEST_HEADING]).translate(GREEK_SPELLED)
+    words = " ".join(re.findall("[A-Za-z]+", letters))
+    return next((name for name, pattern in LIKE_INPUTS.items() if re.search(pattern, words, re.I)), None)
 
 
 # Rows
@@ -130,6 +151,8 @@ class Tally:
     """Those that no row has had."""
     rows: int = 0
     regimes: Counter[str] = field(default_factory=Counter)
+    assumed: int = 0
+    """The rows whose regime is assumed."""
     errors: int = 0
     first_error: str = ""
     beyond: int = 0
@@ -152,6 +175,9 @@ class Tally:
     def lines(self) -> list[str]:
         """Return the messages: the summary, why results are missing, the most first, and the first error."""
         parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
+        if self.assumed:
+            some = f"{self.assumed} " if self.assumed < self.regimes["no-slip"] else ""
+            parts[0] += f" ({some}{REGIME_ASSUMED})"
         counts = [", ".join(parts)] if parts else []
         counts.append(counted(self.errors, "error") if self.errors else "no errors")
         if self.beyond:
@@ -216,6 +242,7 @@ def solve_cells(
         for row, error in enumerate(values[ERROR]):
             if error is None:
                 tally.failures.add(failures(cells.row(row)), f"in row {tally.rows + row + 1}")
+    tally.assumed += reasons.pop(("regime", REGIME_ASSUMED), 0)
     tally.reasons.update(reasons)
     results = values.select(*wanted.names, ERROR)
     tally.add(results, values["regime"])
