@@ -72,7 +72,7 @@ def test_names_of_scenes_tell_capitals_apart() -> None:
     assert "|".join(found) == f"m1 (g): m1, 1/1000|m2 [g]: m2, 1/1000|{plain}|{units}|axle (mN): axle, 1/1000"
 
 
-@pytest.mark.parametrize("columns", ["m1|m_1", "t1|time 1", "m1 (s)", "a|Team|±", "m1|a_err", "a|±|u(a)", "mu (g)", "wrap (rad)"])  # fmt: skip
+@pytest.mark.parametrize("columns", ["m1|m_1", "t1|time 1", "m1 (s)", "a|Team|±", "m1|a_err", "a|±|u(a)", "mu (g)", "wrap (kg)"])  # fmt: skip
 def test_a_column_that_is_refused_may_pass_as_a_label(columns: str) -> None:
     """Its last could be two things, or has a wrong unit; `cases/fit.md` and `cases/batch.md` have the sentences."""
     *others, last = columns.split("|")

@@ -14,6 +14,7 @@ from ..explain.messages import reasons_in
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly, read_value
+from ..reading.units import symbol_of
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NAMES, REGIMES, STANDARD
@@ -283,7 +284,7 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
 
     factor = heading.factor
     power = len(str(max(factor, 1 / factor))) - 1
-    if max(factor, 1 / factor) != 10**power:
+    if max(factor, 1 / factor) != 10**power or symbol_of(heading.unit) == "rad":
         return pl.repeat(None, len(cells), dtype=pl.Float64, eager=True)
     if power and not cells.dtype.is_float():
         cells = cells.cast(pl.String)  # a decimal or a long integer would round twice

@@ -94,7 +94,7 @@ WORDS = {
     "s": "sec second seconds sek seg сек с",
     "N": "newton newtons Н",
     **{"mg": "мг", "mm": "мм", "ms": "мс", "min": "мин", "mN": "мН", "m/s2": "м/с2", "cm/s2": "см/с2"},
-    **{"in": "inch inches", "ft": "foot feet", "lb": "pound pounds lbm"},
+    **{"in": "inch inches", "ft": "foot feet", "lb": "pound pounds lbm", "rad": "radian radians"},
 }
 """Other words for units."""
 _SYMBOLS |= {word: symbol for symbol, words in WORDS.items() for word in words.split()}

@@ -166,8 +166,11 @@ def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> H
     for word, unit, is_loose in divisions(without_blanks(named.get(column, column))):
         meaning = _named(word, vocabulary)
         if meaning and not (is_loose and not is_unit(unit, meaning)):
-            if column in named and not unit:
-                unit = unit_within(column, meaning)
+            if column in named and (own := unit_within(column, meaning)) != unit:
+                if unit and is_unit(own, meaning):
+                    why = f"has the unit {in_quotes(own)}, not {in_quotes(unit)}"
+                    raise refused(column, f"{why}; give --column without a unit")
+                unit = unit or own
             # It may be the symbol of the quantity, as in time (t) or Mass (m).
             is_symbol = unit == meaning.name[:1] or vocabulary.names.get(unit) == meaning.name
             if unit in NO_UNIT or (is_symbol and not is_unit(unit, meaning)):
@@ -270,8 +273,6 @@ def unit_factor(heading: Heading) -> Fraction:
     try:
         if not dimension:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
-        if dimension == "angle" and unit.lower().startswith("rad"):
-            raise Malformed("has angles in radians; give degrees or turns")
         return read_unit(unit, dimension)
     except Malformed as error:
         way = f", or give --column {quote(f'{name} (UNIT)={column}')}" if dimension else ""
@@ -366,7 +367,9 @@ def read_cell(heading: Heading, row: Sequence[Any], comma: bool) -> Input | None
         raise SceneError(heading.name, cell, error.rule) from None
     terms, factor = (None, ONE) if has_unit(text) else (heading.terms, heading.factor)
     if isinstance(value, Angle):
-        return Input(value._replace(number=value.number * factor), uncertainty * factor, cell)
+        in_radians = symbol_of(heading.unit) == "rad" and not has_unit(text)
+        angle = Angle(value.number * factor, "rad" if in_radians else value.unit)
+        return Input(angle, uncertainty * factor, cell)
     if isinstance(value, InTerms):
         value, terms = value
     if factor != 1:
