@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
 from ..explain.conditions import Condition, Failures, failures_of
-from ..explain.messages import reasons_in
+from ..explain.messages import LIKE_RADIANS, reasons_in
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly, read_value
@@ -157,6 +157,8 @@ class Tally:
     errors: int = 0
     first_error: str = ""
     beyond: int = 0
+    like_radians: set[bool | None] = field(default_factory=set)
+    """Whether wraps are degrees that are probably radians, or turns; None for one that is not given."""
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
     failures: Failures = field(default_factory=Failures)
 
@@ -188,6 +190,9 @@ class Tally:
         reasons = [(key, count) for key, count in self.reasons.items() if key[0] in explained]
         ranked = sorted(reasons, key=lambda item: (-item[1], NAMES.index(item[0][0])))
         lines += reasons_in(dict(ranked), self.rows)
+        if self.like_radians == {True}:
+            most = f"all wraps are less than {LIKE_RADIANS[1]}°"
+            lines.append(f"{most}; if they are in radians or turns, say so, as in wrap (rad).")
         lines += [f"first error, in {self.first_error}"] if self.errors else []
         return [*lines, *self.failures.lines(self.rows)]
 
@@ -216,6 +221,8 @@ def solve_cells(
     given: Any = doubles.to_dict() | shared
     if "m1" in shared:  # perhaps all inputs are single numbers
         given["m1"] = pl.repeat(shared["m1"], len(rows), dtype=pl.Float64, eager=True)
+    wraps = pl.select(pl.lit(given.get("wrap")).is_between(*LIKE_RADIANS, closed="none")).to_series()
+    tally.like_radians |= {*wraps.unique()}
     terms = {heading.name: heading.terms for heading in columns.headings if heading.terms}
     solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names], terms)
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
