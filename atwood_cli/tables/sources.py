@@ -70,7 +70,7 @@ def check_format(path: str, kind: str) -> None:
     suffix = Path(path).suffix.lower()
     fits = suffix == f".{kind}" or (SUFFIXES.get(suffix) == kind and suffix not in WORKBOOKS)
     if suffix and not fits and not is_stream(path):
-        raise SceneError("output", path, f"must end in .{kind}, as the table is {kind}")
+        raise SceneError("output", path, f"must end in .{kind}, as the results are written in that format")
 
 
 def is_stream(path: str) -> bool:
