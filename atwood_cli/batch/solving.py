@@ -120,7 +120,7 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
         way += f", or --{missing[0]} for all rows"
         raise Unreadable(f"{lacking} missing; there are {listed(columns)}", f"; or give {way}")
     if measured := [column for column, name in doubtful.items() if name in MEASURED]:
-        raise refused(measured[0], "has measurements, which only solve takes")
+        raise refused(measured[0], "has measurements, which solve and fit take, not batch")
     not_read = [column for column in columns if column not in passed]
     return ReadColumns([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
 

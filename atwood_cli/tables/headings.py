@@ -282,7 +282,7 @@ def unit_factor(heading: Heading) -> Fraction:
 def refused(column: str, why: str, way: str = "") -> Unreadable:
     """Return the error for a heading; a user of the command may go another ``way``, or label the column."""
     label = quote(column) if column.isprintable() and len(column) <= LONGEST_HEADING else in_quotes(column)
-    return Unreadable(f"column {in_quotes(column)} {why}", f"{way}; or leave it unread by --label {label}")
+    return Unreadable(f"column {in_quotes(column)} {why}", f"{way}; --label {label} leaves it unread")
 
 
 def listed(names: Sequence[str]) -> str:
