@@ -17,7 +17,7 @@ from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
 from ..output.text import markdown_table
 from ..solver.scene import SceneError
-from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
+from ..tables.headings import ABOVE, Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import BYTE_ORDER_MARK, Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream
 from ..tables.workbooks import opened_table
@@ -104,7 +104,7 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
             rows = _csv(piece, results, table, columns.comma)
             target.write(_markdown(rows, table, False) if job.markdown else rows)
             target.flush()
-    return _remarks(columns, table.separator)
+    return _remarks(columns, table.separator, [ABOVE][: table.above])
 
 
 def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memoryview:
@@ -182,8 +182,8 @@ def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tall
     return _remarks(columns)
 
 
-def _remarks(columns: ReadColumns, separator: str = "") -> list[str]:
+def _remarks(columns: ReadColumns, separator: str = "", others: Sequence[str] = ()) -> list[str]:
     """Return sentences on how a table was read, if not as usual."""
     headings = [heading for heading in columns.headings if heading.place >= 0]
     not_read = [f"not read: {listed(columns.not_read)}."] if columns.not_read else []
-    return [*read_as(headings, separator, columns.comma), *not_read]
+    return [*read_as(headings, separator, columns.comma, others), *not_read]

@@ -118,7 +118,7 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
         lacking = "columns m1 and m2 are" if missing[1:] else f"column {missing[0]} is"
         way = " ".join(f"--column {mass}=HEADING" for mass in missing)
         way += f", or --{missing[0]} for all rows"
-        raise Unreadable(f"{lacking} missing; there are {listed(columns)}", f"; or give {way}")
+        raise Unreadable(f"{lacking} missing; there are {listed(columns)}", f"; give {way}")
     if measured := [column for column, name in doubtful.items() if name in MEASURED]:
         raise refused(measured[0], "has measurements, which solve and fit take, not batch")
     not_read = [column for column in columns if column not in passed]

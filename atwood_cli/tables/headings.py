@@ -30,6 +30,9 @@ EMPTY = ("", "NA", "NULL", "null")
 """The texts of cells without a number: R and databases write a word."""
 LONGEST_HEADING = 80
 """The most characters of a heading that has a unit: the patterns take long for long texts."""
+MOST_ABOVE = 40
+"""The most rows of titles above the headings."""
+ABOVE = "lines above the headings left out"
 SIGN = r"(?:±|\+/?-)"
 BRACKET = r"[(\[]([^()\[\]]*)[)\]]"
 DIVIDED = (rf"(.+?)[ /]*{BRACKET}", r"([^/]+?) ?(?:/| in ) ?(.+)")
@@ -130,6 +133,13 @@ def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[st
     return [column for column in columns if _meaning(column, vocabulary, named)]
 
 
+def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) -> tuple[str, int]:
+    """Return the separator by which most headings are ``known``, or else are most, and the rows above."""
+    headers = {mark: best_header(text, mark, known, MOST_ABOVE) for mark in SEPARATORS}
+    separator = max(headers, key=lambda mark: headers[mark][:2])
+    return separator, headers[separator][2]
+
+
 def best_header(
     text: str, separator: str, known: Callable[[Sequence[str]], Collection[str]], most_above: int = 0
 ) -> tuple[int, int, int]:
@@ -143,8 +153,10 @@ def best_header(
         rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
         for above, row in enumerate(islice(rows, most_above + 1)):
             counts.append((len(known(row)), len(row), above))
+            if counts[-1][0] > 1:
+                return counts[-1]
             words.append(sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row))
-    return next((count for count in counts if count[0] > 1), counts[words.index(max(words))])
+    return counts[words.index(max(words))]
 
 
 def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:

@@ -8,10 +8,11 @@ import json
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from io import StringIO
+from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..numbers.text import counted, in_quotes
-from .headings import SEPARATORS, Heading, best_header
+from .headings import Heading, find_header
 from .sources import Unreadable, whole_lines
 
 if TYPE_CHECKING:
@@ -86,19 +87,20 @@ class Csv:
     """
 
     def __init__(self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]]):
-        """Read the header by the separator that makes most ``known`` columns, then most columns."""
+        """Read the header, by its ``known`` columns. The rows ``above`` it are left out."""
         self._texts = map(_decoded, whole_lines(blocks, is_csv=True))
         text, header, self.columns = "", "", list[str]()
         while not self.columns and (more := next(self._texts, "")):  # the header may have line ends
             text += more
             mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
             bare = text.removeprefix(BYTE_ORDER_MARK)
-            self.separator = max(SEPARATORS, key=lambda mark: best_header(bare, mark, known))
-            line, header, self.columns = next(records_of(bare, self.separator, 1, True), (1, "", []))
+            self.separator, self.above = find_header(bare, known)
+            rows = (row for row in records_of(bare, self.separator, 1, True) if any(row[2]) or not row[2])
+            line, header, self.columns = next(islice(rows, self.above, None), (1, "", []))
         if not self.columns:
             raise cannot_split(line) if header else Unreadable("it is empty")
-        above, _, self._text = bare.partition(header)
-        self._line = 1 + above.count("\n") + header.count("\n")
+        self._text = bare.split("\n", line - 1)[-1].removeprefix(header)
+        self._line = line + header.count("\n")
         self.header = mark + header.rstrip("\r\n")
         self.line_end = "\r\n" if header.endswith("\r\n") else "\n"
 

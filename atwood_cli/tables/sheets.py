@@ -8,13 +8,11 @@ from os import PathLike, fspath
 from typing import Any, NamedTuple
 
 from ..numbers.text import in_quotes, without_blanks
-from .headings import SEPARATORS, Vocabulary, best_header, recognised
+from .headings import ABOVE, SEPARATORS, Vocabulary, best_header, find_header, recognised
 from .records import records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
 from .workbooks import MOST_BYTES, opened_table
 
-MOST_ABOVE = 40
-"""The most rows of titles above the headings."""
 UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 """The first bytes of a file in UTF-16, as Excel writes its "Unicode text"."""
 COMMENTS = "lines that begin with # left out"
@@ -92,11 +90,8 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
         if not is_header and COMMENTS not in remarks:
             remarks.append(COMMENTS)
     text = "\n".join(lines)
-    headers = {mark: best_header(text, mark, known, MOST_ABOVE) for mark in SEPARATORS}
-    separator = max(headers, key=lambda mark: headers[mark][:2])
-    if start := headers[separator][2]:
-        remarks.append("lines above the headings left out")
-    return Sheet(*_rows(text, separator, start), separator, remarks)
+    separator, start = find_header(text, known)
+    return Sheet(*_rows(text, separator, start), separator, [*remarks, *[ABOVE][:start]])
 
 
 def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[str]]]:
