@@ -126,9 +126,7 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
 
 
 def _meant(column: str) -> str | None:
-    """Return the input that a heading may mean: in other letters, by another name, with a unit behind, or by
-    a word in it.
-    """
+    """Return what a heading may mean: in other letters, by another name, with a unit, or by a word in it."""
     for word, unit, is_loose in divisions(without_blanks(column)):
         letters = normalize("NFKC", word).casefold().translate(GREEK_SPELLED)
         meant = OTHER_NAMES.get("_".join(re.findall("[0-9a-z]+", letters)))

@@ -133,30 +133,27 @@ def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[st
     return [column for column in columns if _meaning(column, vocabulary, named)]
 
 
-def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) -> tuple[str, int]:
-    """Return the separator by which most headings are ``known``, or else are most, and the rows above."""
-    headers = {mark: best_header(text, mark, known, MOST_ABOVE) for mark in SEPARATORS}
-    separator = max(headers, key=lambda mark: headers[mark][:2])
-    return separator, headers[separator][2]
+def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) -> tuple[int, str, int]:
+    """Return how many headings of a table are ``known``, its separator, and the number of rows above them.
 
-
-def best_header(
-    text: str, separator: str, known: Callable[[Sequence[str]], Collection[str]], most_above: int = 0
-) -> tuple[int, int, int]:
-    """Count the known headings and the cells of a table's header by this separator, and the rows above it.
-
-    It is the first row with two ``known`` headings, or else with most words.
+    The header is the first row with two known headings, or else with most words. The separator makes most
+    known headings, or else most cells.
     """
     csv.field_size_limit(LONGEST_RECORD)
-    counts, words = [(0, 0, 0)], [-1]
-    with suppress(csv.Error):
-        rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
-        for above, row in enumerate(islice(rows, most_above + 1)):
-            counts.append((len(known(row)), len(row), above))
-            if counts[-1][0] > 1:
-                return counts[-1]
-            words.append(sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row))
-    return counts[words.index(max(words))]
+    headers: list[tuple[int, int, str, int]] = []
+    for separator in SEPARATORS:
+        header, most = (0, 0, separator, 0), -1
+        with suppress(csv.Error):
+            rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
+            for above, row in enumerate(islice(rows, MOST_ABOVE + 1)):
+                count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
+                if count > 1 or words > most:
+                    header, most = (count, len(row), separator, above), words
+                if count > 1:
+                    break
+        headers.append(header)
+    count, _, separator, above = max(headers, key=lambda header: header[:2])
+    return count, separator, above
 
 
 def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
@@ -379,9 +376,8 @@ def read_cell(heading: Heading, row: Sequence[Any], comma: bool) -> Input | None
         raise SceneError(heading.name, cell, error.rule) from None
     terms, factor = (None, ONE) if has_unit(text) else (heading.terms, heading.factor)
     if isinstance(value, Angle):
-        in_radians = symbol_of(heading.unit) == "rad" and not has_unit(text)
-        angle = Angle(value.number * factor, "rad" if in_radians else value.unit)
-        return Input(angle, uncertainty * factor, cell)
+        unit = value.unit if has_unit(text) or symbol_of(heading.unit) != "rad" else "rad"
+        return Input(Angle(value.number * factor, unit), uncertainty * factor, cell)
     if isinstance(value, InTerms):
         value, terms = value
     if factor != 1:

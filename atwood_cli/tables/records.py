@@ -94,7 +94,7 @@ class Csv:
             text += more
             mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
             bare = text.removeprefix(BYTE_ORDER_MARK)
-            self.separator, self.above = find_header(bare, known)
+            _, self.separator, self.above = find_header(bare, known)
             rows = (row for row in records_of(bare, self.separator, 1, True) if any(row[2]) or not row[2])
             line, header, self.columns = next(islice(rows, self.above, None), (1, "", []))
         if not self.columns:

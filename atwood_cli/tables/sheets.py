@@ -8,7 +8,7 @@ from os import PathLike, fspath
 from typing import Any, NamedTuple
 
 from ..numbers.text import in_quotes, without_blanks
-from .headings import ABOVE, SEPARATORS, Vocabulary, best_header, find_header, recognised
+from .headings import ABOVE, Vocabulary, find_header, recognised
 from .records import records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
 from .workbooks import MOST_BYTES, opened_table
@@ -85,12 +85,12 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
     lines = re.sub(r'\A"?sep=[,;\t]"?\n', "", text, flags=re.IGNORECASE).split("\n")
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = re.sub(r"^\s*#[# \t]*(?![,;])", "", lines[i])  # NumPy writes headings so; # may be one, too
-        is_header = max(best_header(bare, mark, known)[0] for mark in SEPARATORS) > 1
+        is_header = find_header(bare, known)[0] > 1
         lines[i] = bare if is_header else ""
         if not is_header and COMMENTS not in remarks:
             remarks.append(COMMENTS)
     text = "\n".join(lines)
-    separator, start = find_header(text, known)
+    _, separator, start = find_header(text, known)
     return Sheet(*_rows(text, separator, start), separator, [*remarks, *[ABOVE][:start]])
 
 
