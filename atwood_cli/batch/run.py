@@ -7,11 +7,13 @@ import stat
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, nullcontext
+from decimal import Decimal
 from io import BytesIO, StringIO
 from itertools import chain, islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
 
+from ..numbers.digits import format_number, to_digits
 from ..numbers.text import without_blanks
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
@@ -101,20 +103,24 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
     with _watched(chain(first, pieces), job, source) as watched:
         for piece in watched:
             results = solve_cells(piece.cells, columns, wanted, tally, piece.errors)
-            rows = _csv(piece, results, table, columns.comma)
+            rows = _csv(piece, results, table, columns.comma, wanted.digits)
             target.write(_markdown(rows, table, False) if job.markdown else rows)
             target.flush()
     return _remarks(columns, table.separator, [ABOVE][: table.above])
 
 
-def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memoryview:
-    """Return records with their results."""
+def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool, digits: int | None) -> memoryview:
+    """Return records with their results, which have trailing zeros if they are rounded to ``digits``."""
     import polars as pl
 
     error, mark = pl.col(ERROR), table.separator
     quoted = '"' + error.str.replace_all('"', '""', literal=True) + '"'
     special = error.str.contains(f'[{mark}"\r\n]')
     rows = results.with_columns(pl.when(special).then(quoted).otherwise(error).alias(ERROR))
+    if digits:
+        number, round_ = pl.selectors.float(), to_digits(digits)
+        texts = number.map_elements(lambda x: format_number(round_(Decimal(x))), pl.String)
+        rows = rows.with_columns(texts.str.replace(".", "," if comma else ".", literal=True))
     pl.DataFrame([piece.texts.alias("")]).hstack(rows).write_csv(
         buffer := BytesIO(),
         include_header=False,
