@@ -18,6 +18,7 @@ from ..numbers.text import without_blanks
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
 from ..output.text import markdown_table
+from ..solver.quantities import QUANTITIES
 from ..solver.scene import SceneError
 from ..tables.headings import ABOVE, Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import BYTE_ORDER_MARK, Csv, Piece, read_ndjson
@@ -106,7 +107,7 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
             rows = _csv(piece, results, table, columns.comma, wanted.digits)
             target.write(_markdown(rows, table, False) if job.markdown else rows)
             target.flush()
-    return _remarks(columns, table.separator, [ABOVE][: table.above])
+    return _remarks(columns, wanted.names, table.separator, [ABOVE][: table.above])
 
 
 def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool, digits: int | None) -> memoryview:
@@ -162,7 +163,7 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
     known = {*map(without_blanks, keys)}  # any line may have what --column names
     if known and (absent := [column for column in wanted.named if without_blanks(column) not in known]):
         raise Unreadable(f"there is no column {listed(absent[:1])}; there are {listed(keys)}")
-    return _remarks(columns)
+    return _remarks(columns, wanted.names)
 
 
 def _ndjson(piece: Piece, results: "pl.DataFrame") -> memoryview:
@@ -185,11 +186,16 @@ def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tall
     file = whole if isinstance(target, Stdout) or is_stream(job.target) else target
     columns = solve_parquet(source, file, job.wanted, tally)
     target.write(whole.getbuffer())
-    return _remarks(columns)
+    return _remarks(columns, job.wanted.names)
 
 
-def _remarks(columns: ReadColumns, separator: str = "", others: Sequence[str] = ()) -> list[str]:
-    """Return sentences on how a table was read, if not as usual."""
+def _remarks(
+    columns: ReadColumns, names: Sequence[str], separator: str = "", others: Sequence[str] = ()
+) -> list[str]:
+    """Return sentences on how a table was read, if not as usual, and on the units of results then."""
     headings = [heading for heading in columns.headings if heading.place >= 0]
-    not_read = [f"not read: {listed(columns.not_read)}."] if columns.not_read else []
-    return [*read_as(headings, separator, columns.comma, others), *not_read]
+    remarks = read_as(headings, separator, columns.comma, others)
+    if any(heading.factor != 1 or heading.terms for heading in headings):
+        units = [f"{x} in {QUANTITIES[x].unit}" for x in names if x in QUANTITIES and QUANTITIES[x].unit]
+        remarks += [f"results: {', '.join(units)}."] if units else []
+    return [*remarks, *([f"not read: {listed(columns.not_read)}."] if columns.not_read else [])]
