@@ -107,7 +107,7 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
             rows = _csv(piece, results, table, columns.comma, wanted.digits)
             target.write(_markdown(rows, table, False) if job.markdown else rows)
             target.flush()
-    return _remarks(columns, wanted.names, table.separator, [ABOVE][: table.above])
+    return _remarks(columns, wanted.names, table)
 
 
 def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool, digits: int | None) -> memoryview:
@@ -189,12 +189,11 @@ def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tall
     return _remarks(columns, job.wanted.names)
 
 
-def _remarks(
-    columns: ReadColumns, names: Sequence[str], separator: str = "", others: Sequence[str] = ()
-) -> list[str]:
+def _remarks(columns: ReadColumns, names: Sequence[str], table: Csv | None = None) -> list[str]:
     """Return sentences on how a table was read, if not as usual, and on the units of results then."""
     headings = [heading for heading in columns.headings if heading.place >= 0]
-    remarks = read_as(headings, separator, columns.comma, others)
+    separator, above = (table.separator, [ABOVE][: table.above]) if table else ("", [])
+    remarks = read_as(headings, separator, columns.comma, above)
     if any(heading.factor != 1 or heading.terms for heading in headings):
         units = [f"{x} in {QUANTITIES[x].unit}" for x in names if x in QUANTITIES and QUANTITIES[x].unit]
         remarks += [f"results: {', '.join(units)}."] if units else []

@@ -43,13 +43,12 @@ ERROR = "error"
 VOCABULARY = Vocabulary(MASS_NAMES | {name.replace("_", ""): name for name in INPUTS})
 
 GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta", "α": "alpha", "θ": "theta"})
-DIAMETER = "diameter"
 LIKE_INPUTS = {
     "axle": "(axle|bearing).*frict|frict.*(axle|bearing)",
     "mu_k": "(kinetic|sliding|dynamic) (frict|coeff)",
     "mu": r"frict|coeff|(?-i:^f\b)",
     "wrap": r"wrap|contact|\bangle|\bturns?\b|^alpha\b|^theta\b",
-    DIAMETER: r"diameter|\bdia\b|(?-i:^D\b)",
+    "diameter": r"diameter|\bdia\b|(?-i:^D\b)",
     "R": "radius",
     "M": "(pulley|sheave).*(mass|weight)|(mass|weight).*(pulley|sheave)",
     "I": "inertia",
@@ -106,7 +105,7 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
     passed = {*labels, *(heading.column for heading in headings)}
     doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
     for column, name in doubtful.items():
-        if name == DIAMETER and "R" not in inputs:
+        if name == "diameter" and "R" not in inputs:
             raise refused(column, "may be a diameter, twice R; give R")
         if name in INPUTS and not (whole and name in inputs):  # in NDJSON, another row may lack the input
             has_unit = not INPUTS[name].unit or unit_within(column, Heading(0, column, name))
@@ -150,8 +149,7 @@ class Tally:
     """Those that no row has had."""
     rows: int = 0
     regimes: Counter[str] = field(default_factory=Counter)
-    assumed: int = 0
-    """The rows whose regime is assumed."""
+    assumed: int = 0  # of the regimes
     errors: int = 0
     first_error: str = ""
     beyond: int = 0
