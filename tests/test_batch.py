@@ -287,3 +287,6 @@ def test_a_bar_on_a_terminal_after_a_second(tmp_path: Path) -> None:
     bar, end = plain(on_real_terminal(*words, columns=80, program=BAR)).split(said)
     assert ("━" in bar, "%" in bar, bool(re.search(r"[1-9]\d? rows ", bar)), end) == (True, True, True, "")
     assert " ".join(written.split()) == f"atwood: wrote {tmp_path}/out.csv"
+    for form in ("", " --json"):  # into whose rows a bar would run
+        swept = f"sweep --m1 1 --m2 3 --M 1:9:9{form}".split()
+        assert ("%" in on_real_terminal(*swept, columns=80, program=BAR)) == (not form)

@@ -142,7 +142,7 @@ def read_runs(
     kind = _check(sheet, headings, unread, given, named)
     if kind == "a":  # a height has no effect
         headings = [heading for heading in headings if heading.name != "drop"]
-    _check_labels(headings, unread, named)
+    _check_labels(headings, unread)
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     words = [f"{in_quotes(sheet.columns[0])} as the numbers of rows"] if numbers else []
     words += [f"{in_quotes(column)} as a label" for column, _ in unread.values()]
@@ -329,11 +329,9 @@ def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, st
     return by_name or [x for x in unread if any(is_unit(unit, meaning) for unit in units[x])]
 
 
-def _check_labels(
-    headings: Sequence[Heading], unread: Mapping[int, tuple[str, str]], named: Mapping[str, str]
-) -> None:
+def _check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, str]]) -> None:
     """Raise Unreadable for a column of numbers that could hold a quantity, and is no label then."""
-    measured = {own.place for own in headings if own.name in MEASURED and own.column not in named}
+    measured = {own.place for own in headings if own.name in MEASURED}
     mass = Heading(0, "", "m1")
     for place, (column, _) in unread.items():
         unit = unit_within(column, mass)
