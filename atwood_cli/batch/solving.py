@@ -338,9 +338,9 @@ def _solve_row(
         answers = answers_of(cells)
     except SceneError as error:
         return {ERROR: str(error)}, ()
-    each = {name: answers.answer(name) for name in names if name != "regime"}
+    each = {name: answers.answer(name) for name in ("regime", *names)}
     reasons = {(name, answer.reason) for name, answer in each.items() if answer.reason}
-    values = {"regime": answers.decided.regime} | {name: answer.value for name, answer in each.items()}
+    values = {name: answer.value for name, answer in each.items()}
     return values, {*reasons, *answers.decided.assumptions.items()}
 
 
