@@ -61,7 +61,7 @@ def called(words: Sequence[str], stdin: bytes = b"", on_terminal: bool = False, 
     with (
         patch("sys.stdin", TextIOWrapper(BytesIO(stdin))),
         patch("sys.__stdout__", out),
-        patch("atwood_cli.output.page.monotonic", lambda: 0.0),
+        patch("atwood_cli.output.page.monotonic", lambda: 9.0),
         patch.dict(os.environ, around(asked), clear=True),
         redirect_stdout(out),
         redirect_stderr(err),
@@ -115,7 +115,7 @@ QUICK = """
 import sys
 from atwood_cli.__main__ import main
 from atwood_cli.output import page
-page.monotonic = lambda: 0
+page.monotonic = lambda: 9
 main()
 """
 """The program as if no second went by: on a slow machine it would show bars."""
