@@ -241,12 +241,11 @@ def test_the_input_is_never_overwritten(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 def test_a_polars_that_is_too_old_or_missing_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
-    oldest = re.search("polars>=([0-9.]+)", (TOP / "pyproject.toml").read_text(encoding="utf-8"))
-    assert oldest
-    monkeypatch.setattr(pl, "__version__", oldest[1])
+    (oldest,) = re.findall("polars>=([0-9.]+)", (TOP / "pyproject.toml").read_text(encoding="utf-8"))
+    monkeypatch.setattr(pl, "__version__", oldest)
     assert batch(TEXT, "--only a").status == 0
     monkeypatch.setattr(pl, "__version__", "1.9.0")
-    why = f"this needs polars {oldest[1]} or newer, not 1.9.0; pip install --upgrade polars"
+    why = f"this needs polars {oldest} or newer, not 1.9.0; pip install --upgrade polars"
     assert batch(TEXT) == (1, "", f"atwood: {why}\n")
     with pytest.raises(ImportError, match=re.escape(why)):
         solve_table(pl.DataFrame({"m1": [1.0], "m2": [3.0]}))

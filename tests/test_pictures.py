@@ -162,6 +162,7 @@ def test_what_arrows_show(masses: str, sign: int, axle: int) -> None:
     assert arrows == {}
     paths = [line.get_xydata() @ [1, 1j] for line in axes.lines if line.get_color() == figure.PURPLE]
     motions = [(path[0], path[-1]) for path in paths if len(path) > 1]
+    assert [path[0] for path in paths if len(path) == 1] == [end for _, end in motions]  # the heads
     if axle == 30:
         assert motions == []
         return
