@@ -50,6 +50,9 @@ SPELLINGS = {word: name for name, words in {**WORDS, **CONDITIONS}.items() for w
 SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
 VOCABULARY = Vocabulary(MASS_NAMES | SPELLINGS, repeated=MEASURED, uncertain=True)
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
+LIKE_SUM = re.compile(r"total|gesamt|\bsum|somme|diff|dif[ei]r|^\W*[Σ∑Δ]|\bm[\w ]*[-–−+] ?m", re.IGNORECASE)
+"""The headings of sums and of differences."""
+LIKE_THEORY = re.compile("theo|teór|calc|expect|predict", re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
 NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
 LIKE_MASS = re.compile(
@@ -264,8 +267,10 @@ def _headings(sheet: Sheet, labels: Collection[str], named: Mapping[str, str]) -
 def _numbers_of_rows(sheet: Sheet, headings: Sequence[Heading]) -> list[int]:
     """Return the numbers of rows as the first column has them; none if it has others, or a quantity."""
     cells = [row[0].strip() for row in sheet.rows]
+    column = sheet.columns[0]
     is_read = any(heading.place == 0 for heading in headings)
-    if is_read or not all(re.fullmatch("[0-9]{1,9}", cell) for cell in cells):
+    is_mass = LIKE_MASS.search(column[:LONGEST_HEADING]) or unit_within(column, Heading(0, column, "m1"))
+    if is_read or is_mass or not all(re.fullmatch("[0-9]{1,9}", cell) for cell in cells):
         return []
     numbers = [*map(int, cells)]
     return numbers if numbers == sorted({*numbers}) else []
@@ -311,6 +316,8 @@ def _missing(
     if is_turned or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
         return f"{why}: make each run a row, below headings, as m1 (g),m2 (g),t (s)", ""
     options, alone = [f"--column {quote(f'{name}={column}')}" for column, name in named.items()], ""
+    sums = [column for column in left if LIKE_SUM.search(column[0][:LONGEST_HEADING])]
+    left = [column for column in left if column not in sums and not LIKE_THEORY.search(column[0])]
     for name in missing:
         fitting = _fitting(name, left)[: None if name in ("t", "a") else 1]
         left = [column for column in left if column not in fitting]
@@ -318,6 +325,11 @@ def _missing(
         options += [f"--column {quote(f'{name}={column}')}" for column, _ in fitting] or [absent]
         if name == "m1" and not fitting:
             alone = ", or --m1 0 if m2 alone hangs"
+            alone = (
+                "; of a total and a difference, compute m1 and m2 as (total ± difference)/2"
+                if sums
+                else alone
+            )
     return why, f"; give {' '.join(options)}{alone}"
 
 
@@ -342,6 +354,8 @@ def _check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, s
         if LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING]):
             raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
         if is_unit(unit, mass) if unit else LIKE_MASS.search(column[:LONGEST_HEADING]):
+            if LIKE_SUM.search(column[:LONGEST_HEADING]):
+                raise refused(column, "looks like a sum or a difference of masses, which is not read")
             way = ", or give it as --hanger if it hangs on both sides"
             raise refused(column, "looks like a mass that is not read; add it to m1 or m2", way)
 
