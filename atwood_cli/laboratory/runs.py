@@ -25,7 +25,7 @@ from ..tables.headings import (
     decimal_commas_in,
     is_unit,
     listed,
-    name_before_uncertainty,
+    name_at_start,
     read_as,
     read_cell,
     read_headings,
@@ -53,6 +53,7 @@ LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|u
 LIKE_SUM = re.compile(r"total|gesamt|\bsum|somme|diff|dif[ei]r|^\W*[Σ∑Δ]|\bm[\w ]*[-–−+] ?m", re.IGNORECASE)
 """The headings of sums and of differences."""
 LIKE_THEORY = re.compile("theo|teór|calc|expect|predict", re.IGNORECASE)
+LIKE_MEAN = re.compile(r"\b(?:avg|average|mean|mittel(?:wert)?|moyenne|promedio|m[eé]dia)\b", re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
 NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
 LIKE_MASS = re.compile(
@@ -297,6 +298,8 @@ def _check(
         rule = f"is not needed, as the table has {has[double[0]]}; leave it out"
         raise SceneError(double[0], given[double[0]].given, rule)
     left, missing = [*unread.values()], [mass for mass in MASSES if mass not in {*names, *given}]
+    if missing[1:]:  # M may be one of them
+        left += [(heading.column, "") for heading in headings if heading.name == "M"]
     if not kinds:
         missing.append("a" if _fitting("a", left) and not _fitting("t", left) else "t")
     if not {"a", "drop"} & {*names, *given, *missing}:
@@ -315,30 +318,40 @@ def _missing(
     is_turned = left and all(LIKE_NUMBER.match(column) for column, _ in left)
     if is_turned or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
         return f"{why}: make each run a row, below headings, as m1 (g),m2 (g),t (s)", ""
-    options, alone = [f"--column {quote(f'{name}={column}')}" for column, name in named.items()], ""
     sums = [column for column in left if LIKE_SUM.search(column[0][:LONGEST_HEADING])]
     left = [column for column in left if column not in sums and not LIKE_THEORY.search(column[0])]
+    left.sort(key=lambda column: bool(LIKE_MEAN.search(column[0])))
+    speeds = [x for x in left if re.match(r"(v|speed)\b", x[0], re.IGNORECASE) or _fitting("speed", [x])]
+    options, hints = [f"--column {quote(f'{name}={column}')}" for column, name in named.items()], ""
     for name in missing:
         fitting = _fitting(name, left)[: None if name in ("t", "a") else 1]
         left = [column for column in left if column not in fitting]
         absent = "--drop HEIGHT" if name == "drop" else f"--column {name}=HEADING"
         options += [f"--column {quote(f'{name}={column}')}" for column, _ in fitting] or [absent]
         if name == "m1" and not fitting:
-            alone = ", or --m1 0 if m2 alone hangs"
-            alone = (
-                "; of a total and a difference, compute m1 and m2 as (total ± difference)/2"
-                if sums
-                else alone
-            )
-    return why, f"; give {' '.join(options)}{alone}"
+            compute = "; of a total and a difference, compute m1 and m2 as (total ± difference)/2"
+            hints += compute if sums else ", or --m1 0 if m2 alone hangs"
+        if name == "t" and not fitting and left:
+            compute = "; of a speed v after a fall from rest by h, compute a = v²/(2h)"
+            hints += compute if speeds else "; name each column of repeats so" if left[1:] else ""
+    return why, f"; give {' '.join(options)}{hints}"
 
 
 def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Return the unread columns that may hold a quantity, by name, or by their unit or that of a cell."""
-    meaning = Heading(0, "", SPELLINGS[name])
-    by_name = [x for x in unread if name_before_uncertainty(x[0], VOCABULARY) == meaning.name]
-    units = {x: (unit_within(x[0], meaning), x[1].lstrip("0123456789., ")) for x in unread}
-    return by_name or [x for x in unread if any(is_unit(unit, meaning) for unit in units[x])]
+    """Return the unread columns that may hold a quantity, by name, or else by their unit or that of a cell.
+
+    Of several, the headings differ from the first in a number or a letter alone, as those of repeats do.
+    """
+    meaning, ranks = Heading(0, "", SPELLINGS.get(name, name)), dict[tuple[str, str], int]()
+    for column, cell in unread:
+        unit = unit_within(column, meaning)
+        fits = is_unit(unit or cell.lstrip("0123456789., "), meaning)
+        is_named = 2 * (name_at_start(column, VOCABULARY) == meaning.name)
+        is_mass = name in MASSES and LIKE_MASS.search(column[:LONGEST_HEADING])
+        ranks[column, cell] = (is_named or int(fits or bool(is_mass))) if fits or not unit else 0
+    best = [x for x, rank in ranks.items() if rank == max(ranks.values()) > 0]
+    alike = [re.sub(r"\d+|\b[A-Za-z]\b", "", column) for column, _ in best]
+    return [x for x, words in zip(best, alike, strict=True) if words == alike[0]]
 
 
 def _check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, str]]) -> None:

@@ -221,9 +221,9 @@ def unit_within(column: str, meaning: Heading) -> str:
     return next(iter([*fitting, *others]), "")
 
 
-def name_before_uncertainty(column: str, vocabulary: Vocabulary) -> str:
-    """Return the quantity of a column of numbers with uncertainties, as m1 of (m1 ± Δm1) (g), or ""."""
-    before = re.match(rf"\W*(.+?)\s*{SIGN}", column[:LONGEST_HEADING])
+def name_at_start(column: str, vocabulary: Vocabulary) -> str:
+    """Return the quantity that a heading begins with, as m1 of (m1 ± Δm1) (g), or a of a_measured, or ""."""
+    before = re.match(rf"\W*(.+?)(?:\s*{SIGN}|[ _,(\[])", column[:LONGEST_HEADING])
     meaning = before and _named(before[1], vocabulary)
     return meaning.name if meaning else ""
 
