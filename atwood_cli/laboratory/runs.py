@@ -61,14 +61,14 @@ LIKE_MASS = re.compile(
     r"|\w*груз\w*)(?:\b|_)",
     re.IGNORECASE,
 )
-LARGE_MASSES = 0.5, "some masses are 0.5 kg or more; if they are in g, say so, as in m1 (g)."
+LARGE_MASSES = 0.5, "some masses are 0.5 kg or more", "g"
 LARGE = {
     "m1": LARGE_MASSES,
     "m2": LARGE_MASSES,
-    "drop": (10, "some heights of fall are 10 m or more; if they are in cm, say so, as in drop (cm)."),
-    "time": (1000, "some times are 1000 s or more; if they are in ms, say so, as in time (ms)."),
+    "drop": (10, "some heights of fall are 10 m or more", "cm"),
+    "time": (1000, "some times are 1000 s or more", "ms"),
 }
-"""The numbers, in SI units, from which a laboratory may have left out a smaller unit, and the remark."""
+"""The numbers, in SI units, from which a laboratory may have left out a smaller unit, and what to say."""
 CART = 5
 """The ratio of m1 to each m2 above which m1 may be a cart, or a cylinder that is turned."""
 ZERO = re.compile(r"[+-]?0+([.,]0*)?( ?[^\W\d_]+)?|")
@@ -193,8 +193,10 @@ def read_runs(
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
     result = _as_columns(kind, runs, numbers, left_out)
     columns = {**result.given, kind: result.values}
-    large = [LARGE[x][1] for x in columns if x in LARGE and x in bare and max(columns[x]) >= LARGE[x][0]]
-    remarks += dict.fromkeys(large)
+    for x, (least, words, unit) in LARGE.items():
+        if x in bare and max(columns.get(x, [0])) >= least and not any(words in remark for remark in remarks):
+            example = f"{given[x].given}{unit}" if x in given else f"{x} ({unit})"
+            remarks.append(f"{words}; if they are in {unit}, say so, as in {example}.")
     heights = {dict(run).get("drop") for run in runs}
     if "drop" not in given and len(heights) == 1 and (height := heights.pop()):
         same["drop"] = Input(*height, None)  # if it is wrong, it is so in all runs alike
