@@ -135,6 +135,7 @@ TABLE = "m1,m2,time\n0.2,0.207,3.99\n0.201,0.206,5.02\n"
 SEMICOLONS = TABLE.replace(",", ";").replace(".", ",")
 PARTED = "cells separated by semicolons, decimal commas"
 COMMENTS, ABOVE = "lines that begin with # left out", "lines above the headings left out"
+BELOW = "units in the row below the headings"
 
 
 @pytest.fixture
@@ -190,6 +191,8 @@ UNIT_OF_M1 = "'m1 (kg)' as m1 in kg; 'm2' in kg, 'time' in s, as no unit is give
         ("sep=,\n" + TABLE, ""),
         ("# Group 3\n# it's 5\" high\n" + TABLE, COMMENTS),
         (TABLE.replace("\n0.201", "\n#0.3,0.4,1\n0.201"), COMMENTS),
+        (TABLE.replace("\n", "\n#g,g,s\n", 1), COMMENTS),  # two columns called g: a header, it was thought
+        ("m1,m2,time\ng,(g),-\n200,207,3.99\n201,206,5.02\n", BELOW),
         ("# " + TABLE, ""),  # as numpy.savetxt writes a header
         ("Atwood's machine, group 3\n\n" + TABLE, ABOVE),
         ('5" drop\n' + TABLE, ABOVE),

@@ -33,7 +33,7 @@ from ..tables.headings import (
     refused,
     unit_within,
 )
-from ..tables.sheets import Sheet, sheet_of
+from ..tables.sheets import Sheet, sheet_of, units_in_cells
 from ..tables.sources import Unreadable
 
 Column = NDArray[np.float64]
@@ -133,7 +133,7 @@ def read_runs(
     Rows ``without``, by their numbers, and their cells, as 8:t2, are left out. Raises Unreadable if it is no
     table of runs, SceneError for what does not fit the table.
     """
-    sheet = sheet_of(source, VOCABULARY, named, sheet_name)
+    sheet = units_in_cells(sheet_of(source, VOCABULARY, named, sheet_name))
     headings = _headings(sheet, labels, named)
     numbers = _numbers_of_rows(sheet, headings)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
@@ -193,10 +193,10 @@ def read_runs(
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
     result = _as_columns(kind, runs, numbers, left_out)
     columns = {**result.given, kind: result.values}
-    for x, (least, words, unit) in LARGE.items():
-        if x in bare and max(columns.get(x, [0])) >= least and not any(words in remark for remark in remarks):
+    for x, (least, what, unit) in LARGE.items():
+        if x in bare and max(columns.get(x, [0])) >= least and not any(what in remark for remark in remarks):
             example = f"{given[x].given}{unit}" if x in given else f"{x} ({unit})"
-            remarks.append(f"{words}; if they are in {unit}, say so, as in {example}.")
+            remarks.append(f"{what}; if they are in {unit}, say so, as in {example}.")
     heights = {dict(run).get("drop") for run in runs}
     if "drop" not in given and len(heights) == 1 and (height := heights.pop()):
         same["drop"] = Input(*height, None)  # if it is wrong, it is so in all runs alike

@@ -294,6 +294,13 @@ def refused(column: str, why: str, way: str = "") -> Unreadable:
     return Unreadable(f"column {in_quotes(column)} {why}", f"{way}; --label {label} leaves it unread")
 
 
+def units_in(row: Sequence[str]) -> list[str]:
+    """Return the units in a row below the headings that has nothing else; none if it has a number or a word."""
+    units = [cell.strip(" ()[]") for cell in row]
+    is_row_of_units = all(unit in ("", "-", PERCENT) or symbol_of(unit) for unit in units)
+    return units if is_row_of_units and any(map(symbol_of, units)) else []
+
+
 def listed(names: Sequence[str]) -> str:
     """Return headings in a sentence, the first of many; none if there are none."""
     most = 12

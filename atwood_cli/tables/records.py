@@ -12,7 +12,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..numbers.text import counted, in_quotes
-from .headings import Heading, find_header
+from .headings import Heading, find_header, units_in
 from .sources import Unreadable, whole_lines
 
 if TYPE_CHECKING:
@@ -106,10 +106,14 @@ class Csv:
 
     def pieces(self, headings: Sequence[Heading]) -> Iterator[Piece]:
         """Yield the records below the header. Raises Unreadable."""
+        is_first = True
         while text := self._text or next(self._texts, ""):
             self._text = ""
             piece = self._in_bulk(text, headings) or self._by_csv(text, headings)
             if len(piece.texts):
+                if is_first and headings and units_in(piece.cells.row(0)):
+                    raise Unreadable("row 1 has units; write them in the headings, as m1 (g)")
+                is_first = False
                 yield piece
 
     def _in_bulk(self, text: str, headings: Sequence[Heading]) -> Piece | None:

@@ -8,7 +8,7 @@ from os import PathLike, fspath
 from typing import Any, NamedTuple
 
 from ..numbers.text import in_quotes, without_blanks
-from .headings import ABOVE, Vocabulary, find_header, recognised
+from .headings import ABOVE, OWN_UNIT, Vocabulary, find_header, recognised, units_in
 from .records import records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
 from .workbooks import MOST_BYTES, opened_table
@@ -55,6 +55,21 @@ def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str], name
     return Sheet([name for name, _ in columns], list(zip(*(cells for _, cells in columns), strict=True)))
 
 
+def units_in_cells(sheet: Sheet) -> Sheet:
+    """Return a table without a row of units below the headings: its cells have them."""
+    units = units_in(sheet.rows[0]) if sheet.rows else []
+    if not units:
+        return sheet
+    rows = [
+        [
+            f"{x} {u.strip('-')}" if x.strip() and not OWN_UNIT.search(x) else x
+            for x, u in zip(row, units, strict=True)
+        ]
+        for row in sheet.rows[1:]
+    ]
+    return sheet._replace(rows=rows, remarks=["units in the row below the headings", *sheet.remarks])
+
+
 def _content(blocks: Iterator[bytes]) -> bytes:
     """Return the bytes of a small file, in UTF-8 if they begin with a mark of UTF-16. Raises Unreadable."""
     content = b""
@@ -85,7 +100,8 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
     lines = re.sub(r'\A"?sep=[,;\t]"?\n', "", text, flags=re.IGNORECASE).split("\n")
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = re.sub(r"^\s*#[# \t]*(?![,;])", "", lines[i])  # NumPy writes headings so; # may be one, too
-        is_header = find_header(bare, known)[0] > 1
+        is_first = not "".join(lines[:i]).strip()
+        is_header = is_first and find_header(bare, known)[0] > 1
         lines[i] = bare if is_header else ""
         if not is_header and COMMENTS not in remarks:
             remarks.append(COMMENTS)
