@@ -35,11 +35,13 @@ def verdict(fit: Fitted) -> str:
         if name in fit.results:
             value, u, (low, high) = fit.results[name]
             verb = "is not distinguishable from 0"
-            if low > u / 20:  # as cut at the second digit of u
+            is_above = float(cut(low, u) or 0) > 0  # as the table shows it
+            if is_above:
                 verb = "is clearly above 0"
             elif value < -u:
-                verb = f"is below 0 by {rounded(-value / u)} standard uncertainties, which chance may explain"
-            most = f"; it may be up to {cut(high, u)} {QUANTITIES[name].unit}" if low <= u / 20 < high else ""
+                verb = "is negative, which chance may explain"
+            is_open = not is_above and float(cut(high, u) or 0) > 0
+            most = f"; it may be up to {cut(high, u)} {QUANTITIES[name].unit}" if is_open else ""
             sentences.append(_capital(f"{QUANTITIES[name].words} {verb}{most}."))
     return " ".join(sentences)
 
@@ -54,7 +56,10 @@ def _scatter(fit: Fitted) -> str:
         digits = int(-log10(max(share, ROUNDING)))
         return f"The runs agree with the fit to {digits} digits, as computed data do."
     if not fit.data.scatter.any():
-        return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."
+        repeated = np.flatnonzero(np.bincount(fit.runs.run) > 1)
+        equal = f"Repeats in {fit.runs.rows_in_words(*repeated)} are equal, as those of a copied row"
+        why = equal if len(repeated) else f"No {MEASURED[fit.runs.kind]} was repeated"
+        return f"{why}, so only the residuals show the scatter."
     probability = f"p = {rounded(p_value)}" if p_value >= 0.001 else "p < 0.001"
     source = "uncertainties" if fit.data.stated else "repeats"
     known_dof = fit.data.known_dof
@@ -163,10 +168,11 @@ def _print_page(fit: Fitted, public: Fit) -> None:
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, public))
-    between = " It includes a scatter of forces between runs." if fit.line.between else ""
+    source = "with the scatter between runs added" if fit.data.scatter.any() else "as the residuals show it"
+    between = f", {source}" if fit.line.between else ""
     has_columns = fit.data.stated or fit.data.uncertain
     independent = " Uncertainties in columns count as independent from row to row." if has_columns else ""
-    page.say(f"u is the standard uncertainty of a run's mean.{between}{independent}", *public.notes[first:])
+    page.say(f"u is the standard uncertainty of a run's mean{between}.{independent}", *public.notes[first:])
     page.say(*public.notes[:first], style="bold")
     if results:
         numbers = ((x, published(*result), QUANTITIES[x]) for x, result in results.items())
