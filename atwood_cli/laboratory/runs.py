@@ -53,7 +53,10 @@ LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|u
 LIKE_SUM = re.compile(r"total|gesamt|\bsum|somme|diff|dif[ei]r|^\W*[Σ∑Δ]|\bm[\w ]*[-–−+] ?m", re.IGNORECASE)
 """The headings of sums and of differences."""
 LIKE_THEORY = re.compile("theo|teór|calc|expect|predict", re.IGNORECASE)
-LIKE_MEAN = re.compile(r"\b(?:avg|average|mean|mittel(?:wert)?|moyenne|promedio|m[eé]dia)\b", re.IGNORECASE)
+MEAN = r"\b(?:avg|average|mean|mittel(?:wert)?|moyenne|promedio|m[eé]dia)\b"
+LIKE_MEAN = re.compile(MEAN, re.IGNORECASE)
+STATISTIC = re.compile(rf"\s*(?:{MEAN}|s\.?d\.?|st(?:d|andard)?\.? ?dev\w*)\W*", re.IGNORECASE)
+"""The cells by which a row is known to be computed from others."""
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
 NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
 LIKE_MASS = re.compile(
@@ -168,6 +171,9 @@ def read_runs(
     for number, row in zip(numbers, sheet.rows, strict=True):
         if _begins_trace(row, headings):
             unused["the height and the time are 0"].append(number)
+            continue
+        if any(map(STATISTIC.fullmatch, row)):
+            unused["a mean or a standard deviation is no run"].append(number)
             continue
         inputs, measured = dict[str, Number](), dict[str, Number]()
         for heading, cell in _read_row(number, row, headings, comma, by):
