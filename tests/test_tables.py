@@ -226,7 +226,7 @@ def test_the_step_of_readings_is_that_of_the_last_digit(read: Any) -> None:
     assert [read(f"m1,m2,t\n1,2,{t}\n2,3,20\n").step for t in ("10", "9.5", "8.25")] == [1, 0.1, 0.01]
 
 
-UNCERTAIN = "error|u|± a|σ|Uncertainty (s)".split("|")
+UNCERTAIN = "error|u|± a|σ|Uncertainty (s)|SD|std dev (s)|dt (s)|Unsicherheit t (s)|Incertitude|Fehler".split("|")
 
 
 @pytest.mark.parametrize(
@@ -234,6 +234,7 @@ UNCERTAIN = "error|u|± a|σ|Uncertainty (s)".split("|")
     [
         ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", ": make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
         ("n,mass one (g),Zeit (s),mass two (g)\n1,2,3,4\n", "; give --column 'm1=mass one (g)' --column 'm2=mass two (g)' --column 't=Zeit (s)'"),
+        ("m1,m2,t,F (N),SD,Fall t (s),dt (s)\n1,2,3,4,5,6,7\n", "'SD' could be an uncertainty, as could 'dt (s)'; name what of"),
         *((f"m1,m2,t,{column}\n1,2,3,4\n", f"column '{column}' could be an uncertainty") for column in UNCERTAIN),
     ],
 )  # fmt: skip

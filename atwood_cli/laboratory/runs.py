@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import in_quotes, shortened
+from ..reading.units import UNITS, symbol_of
 from ..solver.scene import INPUTS, MASSES, Input, InTerms, SceneError
 from ..tables.headings import (
     EMPTY,
@@ -49,7 +50,11 @@ CONDITIONS = {"M": "M", "g": "g", "inertia": "inertia", "I": "I", "R": "R radius
 SPELLINGS = {word: name for name, words in {**WORDS, **CONDITIONS}.items() for word in words.split()}
 SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
 VOCABULARY = Vocabulary(MASS_NAMES | SPELLINGS, repeated=MEASURED, uncertain=True)
-LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
+LIKE_UNCERTAINTY = re.compile(
+    r"±|\+/-|[Δδσ]|delta|sigma|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc|incert|fehler|s\.?d\b|d[tamh]\d?\b)"
+    r"|(?:\b|_)(?:st(?:d|andard)\.?[ _-]?(?:dev|abw)|tolerance|unsicherheit)",
+    re.IGNORECASE,
+)
 LIKE_SUM = re.compile(r"total|gesamt|\bsum|somme|diff|dif[ei]r|^\W*[Σ∑Δ]|\bm[\w ]*[-–−+] ?m", re.IGNORECASE)
 """The headings of sums and of differences."""
 LIKE_THEORY = re.compile("theo|teór|calc|expect|predict", re.IGNORECASE)
@@ -366,15 +371,19 @@ def _check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, s
     """Raise Unreadable for a column of numbers that could hold a quantity, and is no label then."""
     measured = {own.place for own in headings if own.name in MEASURED}
     mass = Heading(0, "", "m1")
+    uncertain = [column for column, _ in unread.values() if LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING])]
     for place, (column, _) in unread.items():
         unit = unit_within(column, mass)
+        is_mass = unit != "t" and symbol_of(unit) in UNITS["mass"]  # that is a time, rather than a tonne
         if column in INPUTS:
             raise refused(column, "has no effect on a fit")
         if not column.strip() and place - 1 in measured:
             raise refused(column, "has numbers and no heading, behind a measurement; give it one")
-        if LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING]):
-            raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
-        if is_unit(unit, mass) if unit else LIKE_MASS.search(column[:LONGEST_HEADING]):
+        if column in uncertain:
+            others = f", as could {listed(uncertain[1:])}" if uncertain[1:] else ""
+            raise refused(column, f"could be an uncertainty{others}; name what of, as in 'u(t)'")
+        may_be_mass = (not unit or is_unit(unit, mass)) and LIKE_MASS.search(column[:LONGEST_HEADING])
+        if is_mass or may_be_mass:
             if LIKE_SUM.search(column[:LONGEST_HEADING]):
                 raise refused(column, "looks like a sum or a difference of masses, which is not read")
             way = ", or give it as --hanger if it hangs on both sides"

@@ -213,7 +213,8 @@ def unit_within(column: str, meaning: Heading) -> str:
     column = column if len(column) <= LONGEST_HEADING else ""
     bare = without_blanks(re.sub(BRACKET, "", column))
     units = [(unit.strip(), False) for unit in reversed(re.findall(BRACKET, column))]
-    units += [(unit, is_loose) for _, unit, is_loose in divisions(bare)]
+    if not any(symbol_of(unit) for unit, _ in units):
+        units += [(unit, is_loose) for _, unit, is_loose in divisions(bare)]
     fitting = [unit for unit, _ in units if is_unit(unit, meaning)]
     others = [
         unit for unit, is_loose in units if not is_loose and (symbol_of(unit) or LIKE_UNIT.search(unit))
