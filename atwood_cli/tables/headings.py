@@ -296,7 +296,7 @@ def refused(column: str, why: str, way: str = "") -> Unreadable:
 
 
 def units_in(row: Sequence[str]) -> list[str]:
-    """Return the units in a row below the headings that has nothing else; none if it has a number or a word."""
+    """Return the units in a row below the headings that has nothing else, none if there is no such row."""
     units = [cell.strip(" ()[]") for cell in row]
     is_row_of_units = all(unit in ("", "-", PERCENT) or symbol_of(unit) for unit in units)
     return units if is_row_of_units and any(map(symbol_of, units)) else []
