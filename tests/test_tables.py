@@ -267,7 +267,8 @@ def test_no_heading_changes_a_result_without_a_word(tmp_path: Path) -> None:
         except Unreadable as refused:
             ways.add("--" in refused.options)
             continue
-        said = runs.remarks[0].partition("; ")[2]
+        clauses = runs.remarks[0].split("; ")  # the last may have the columns without a unit
+        said = clauses[-1] if "as no unit is given" in clauses[-1] else ""
         got = [runs.given["m1"], runs.given["drop"], runs.values]
         for column, truth, values in zip([*columns][1:], TRUTH.values(), got, strict=True):
             right = np.allclose(values, [*map(float, truth)], rtol=1e-9)
