@@ -226,7 +226,9 @@ def test_the_step_of_readings_is_that_of_the_last_digit(read: Any) -> None:
     assert [read(f"m1,m2,t\n1,2,{t}\n2,3,20\n").step for t in ("10", "9.5", "8.25")] == [1, 0.1, 0.01]
 
 
-UNCERTAIN = "error|u|± a|σ|Uncertainty (s)|SD|std dev (s)|dt (s)|Unsicherheit t (s)|Incertitude|Fehler".split("|")
+UNCERTAIN = "error|u|± a|σ|Uncertainty (s)|SD|std dev (s)|dt (s)|Unsicherheit t (s)|Incertitude|Fehler".split(
+    "|"
+)
 
 
 @pytest.mark.parametrize(

@@ -18,8 +18,9 @@ from ..numbers.text import without_blanks
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
 from ..output.text import markdown_table
+from ..reading.inputs import read_value
 from ..solver.quantities import QUANTITIES
-from ..solver.scene import SceneError
+from ..solver.scene import MASSES, InTerms, SceneError
 from ..tables.headings import ABOVE, Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import BYTE_ORDER_MARK, Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream
@@ -107,7 +108,7 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
             rows = _csv(piece, results, table, columns.comma, wanted.digits)
             target.write(_markdown(rows, table, False) if job.markdown else rows)
             target.flush()
-    return _remarks(columns, wanted.names, table)
+    return _remarks(columns, wanted, table)
 
 
 def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool, digits: int | None) -> memoryview:
@@ -163,7 +164,7 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
     known = {*map(without_blanks, keys)}  # any line may have what --column names
     if known and (absent := [column for column in wanted.named if without_blanks(column) not in known]):
         raise Unreadable(f"there is no column {listed(absent[:1])}; there are {listed(keys)}")
-    return _remarks(columns, wanted.names)
+    return _remarks(columns, wanted)
 
 
 def _ndjson(piece: Piece, results: "pl.DataFrame") -> memoryview:
@@ -186,15 +187,20 @@ def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tall
     file = whole if isinstance(target, Stdout) or is_stream(job.target) else target
     columns = solve_parquet(source, file, job.wanted, tally)
     target.write(whole.getbuffer())
-    return _remarks(columns, job.wanted.names)
+    return _remarks(columns, job.wanted)
 
 
-def _remarks(columns: ReadColumns, names: Sequence[str], table: Csv | None = None) -> list[str]:
+def _remarks(columns: ReadColumns, wanted: Wanted, table: Csv | None = None) -> list[str]:
     """Return sentences on how a table was read, if not as usual, and on the units of results then."""
     headings = [heading for heading in columns.headings if heading.place >= 0]
     separator, above = (table.separator, [ABOVE][: table.above]) if table else ("", [])
     remarks = read_as(headings, separator, columns.comma, above)
     if any(heading.factor != 1 or heading.terms for heading in headings):
-        units = [f"{x} in {QUANTITIES[x].unit}" for x in names if x in QUANTITIES and QUANTITIES[x].unit]
-        remarks += [f"results: {', '.join(units)}."] if units else []
+        units = {x: QUANTITIES[x].unit for x in wanted.names if x in QUANTITIES and QUANTITIES[x].unit}
+        remarks += [f"results: {', '.join(f'{x} in {unit}' for x, unit in units.items())}."] if units else []
+    masses = [heading for heading in headings if heading.name in MASSES]
+    given = (read_value(x, text) for x, text in wanted.given.items() if x in MASSES)
+    bare = [heading.name for heading in masses if not heading.unit]
+    if bare and (any(heading.terms for heading in masses) or any(isinstance(x, InTerms) for x in given)):
+        remarks.append(f"{bare[0]} is in kg; for a weight give its unit, as {bare[0]} (N).")
     return [*remarks, *([f"not read: {listed(columns.not_read)}."] if columns.not_read else [])]

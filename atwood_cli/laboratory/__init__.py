@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..numbers.text import naming_the_extra, sentence, without_blanks
 from ..reading.inputs import read_input
@@ -14,11 +14,18 @@ from ..tables.sources import Unreadable
 from .results import Fit as Fit
 
 if TYPE_CHECKING:
+    from typing import Protocol
+
     import polars as pl
 
     from .fitting import Fitted
 
-    Table = str | PathLike[str] | Mapping[str, Iterable[object]] | pl.DataFrame
+    class Frame(Protocol):
+        """A frame of pandas, whose types need not be installed."""
+
+        def items(self) -> Iterable[tuple[Any, Any]]: ...
+
+    Table = str | PathLike[str] | Mapping[str, Iterable[object]] | pl.DataFrame | Frame
 
 
 def fit(
@@ -42,9 +49,9 @@ def fit(
 
     Args:
         runs: A table with a row for each run: the path of a CSV or .tsv file, a mapping of columns of equal
-            length, or a polars frame. Columns are named as in a file: m1, m2, and a, or t (t1, t2 and so on
-            for repeats). They are in kg, m/s² and s unless the name has a unit, as "m1 (g)"; a cell may be
-            text, as "2.05(2)". A missing value, as None or NaN, is an empty cell.
+            length, or a frame of polars or pandas. Columns are named as in a file: m1, m2, and a, or t (t1,
+            t2 and so on for repeats). They are in kg, m/s² and s unless the name has a unit, as "m1 (g)"; a
+            cell may be text, as "2.05(2)". A missing value, as None or NaN, is an empty cell.
         drop: The height of fall of all runs, in m, for times.
         m1, m2: A mass that all runs share, in kg; 0 if nothing hangs there.
         hanger: The mass of the hangers on both sides, in kg, which the columns m1 and m2 leave out.
