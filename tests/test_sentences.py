@@ -210,7 +210,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
     r"mu is not given, so the string is assumed not to slip: true( on a massless pulley)? if mu is at least"
     rf" {NUMBER}\.": assumed,
     rf"No slip: mu = {NUMBER}, and at least {NUMBER} is needed\.": holds,
-    rf"No slip on any pulley: the heavier mass is {NUMBER} kg, and only above {NUMBER} kg does a heavy enough pulley .*": holds_on_any,
+    rf"No slip on any pulley: the heavier mass is {NUMBER} kg, and only above {NUMBER} kg does a heavy enough pulley make the string slip\.": holds_on_any,
     r"No slip on any pulley, for any heavier mass that can be typed\.": claimed(
         lambda c: c.regime(pulley=inf, h=Fraction(10**500)) == "no-slip"
     ),
