@@ -44,6 +44,8 @@ NEAR_BEST = 4.0
 """Causes are as good as the best if their χ² is not this many times the variance above it."""
 EARTH = 9.76, 9.84
 """The least and the most gravity (m/s²) on land."""
+PLAUSIBLE = 5.0, 15.0
+"""The least and the most gravity (m/s²) that may be a cause: beyond it, something else is wrong."""
 WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
 SHARES = 1e-4, 2.0
@@ -238,8 +240,9 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
 def _causes(fit: Fitted) -> list[str]:
     """Return a message if one more free quantity repairs a fit, or if sound runs cannot show a delay.
 
-    Each is freed in turn. An F test judges what the best takes off χ²; the known variance counts in it unless
-    runs scatter more than that with the best, too. Named are all that are as good as the best.
+    Each is freed in turn; what is fitted then must be physical. An F test judges what the best takes off χ²;
+    the known variance counts in it unless runs scatter more than that with the best, too. Named are all that
+    are as good as the best.
     """
     freed, delay = list[tuple[Line, str]](), ""
     is_open = fit.runs.kind == "time" and "delay" not in fit.names
@@ -250,12 +253,16 @@ def _causes(fit: Fitted) -> list[str]:
             if fit.line.dof < 2 or not separates(fit.data, fit.given.values, names):
                 continue
             values, line = estimate(fit.data, known, names, fit.values)
-            value, u = values[name], float(np.sqrt(line.covariance[-1, -1]))
-            if (name == "delay" or value + 2 * u > 0) and abs(value - fit.values[name]) > u:
+            spread = np.sqrt(line.covariance.diagonal()).tolist()
+            value, u = values[name], spread[-1]
+            is_physical = name != "gravity" or PLAUSIBLE[0] < value < PLAUSIBLE[1]
+            for x, u_x in zip(names, spread, strict=True):
+                is_physical &= x == "delay" or values[x] + 2 * u_x > 0
+            if is_physical and abs(value - fit.values[name]) > u:
                 freed.append((line, _cause(name, value, u, fit.given, names)))
             if name == "delay":
                 is_open = line.times * u > WIDE_DELAY
-                delay = f" (`--find {','.join(names)}` gives {published(value, u)[0]} s)"
+                delay = f" (`--find {','.join(names)}` gives {published(value, u)[0]} s)" * is_physical
     if freed:
         freed.sort(key=lambda pair: pair[0].chi2)
         best = freed[0][0]
