@@ -89,7 +89,7 @@ def fit(
     m1: Annotated[str | None, scene_option("m1", remark=", of all runs")] = None,
     m2: Annotated[str | None, scene_option("m2", remark=", of all runs")] = None,
     hanger: Annotated[
-        str | None, option("Scene", metavar="MASS", help="Mass on each side that columns leave out.")
+        str | None, option("Scene", metavar="MASS", help="Mass to add to m1 and to m2.")
     ] = None,
     M: Annotated[str | None, scene_option("M", remark=", if it is known")] = None,
     inertia: Annotated[str | None, scene_option("inertia", remark="; adds pulley_mass")] = None,

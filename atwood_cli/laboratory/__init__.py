@@ -54,7 +54,7 @@ def fit(
             cell may be text, as "2.05(2)". A missing value, as None or NaN, is an empty cell.
         drop: The height of fall of all runs, in m, for times.
         m1, m2: A mass that all runs share, in kg; 0 if nothing hangs there.
-        hanger: The mass of the hangers on both sides, in kg, which the columns m1 and m2 leave out.
+        hanger: The mass of the hangers, in kg, which is added to m1 and to m2.
         g, M, inertia, I, R, axle: Inputs that all runs share, as `solve` takes them: numbers in SI units, or
             text with a unit or an uncertainty. M, I, axle and g are not fitted if given. R gives the moment
             of inertia, ``inertia`` the pulley's mass.
@@ -128,7 +128,8 @@ def _read_given(name: str, value: Given) -> Input:
     try:
         read = read_input("m1" if name == "hanger" else name, value)
     except SceneError as error:
-        raise SceneError(name, value, error.rule) from None
+        is_list = "atwood sweep" in error.rule
+        raise SceneError(name, value, "must be one number, for all runs" if is_list else error.rule) from None
     if name in (*MASSES, "hanger") and read.uncertainty:
         rule = "has an uncertainty, which no mass of all runs may have; state it in cells"
         raise SceneError(name, value, rule)

@@ -137,7 +137,7 @@ def read_runs(
 
     ``source`` is the path of a file, with the name of its sheet, "-" for stdin, or columns by their headings.
     ``labels`` are headings that belong to no run, and ``named`` maps headings to what they mean. ``given``
-    has what all runs share, such as m1 or drop, and perhaps a hanger, which columns of masses leave out.
+    has what all runs share, such as m1 or drop, and perhaps a hanger, which is added to m1 and m2.
     Rows ``without``, by their numbers, and their cells, as 8:t2, are left out. Raises Unreadable if it is no
     table of runs, SceneError for what does not fit the table.
     """
@@ -161,13 +161,15 @@ def read_runs(
     by = {x: given[x].value for x in ("R", "g") if x in given and not given[x].uncertainty}
     given = {x: _in_own_terms(x, read, by) for x, read in given.items() if x in (*MASSES, "drop", "hanger")}
     hanger = given.get("hanger")
+    extra = hanger.value if hanger else Fraction(0)
     if hanger:
-        sides = " and ".join(heading.name for heading in headings if heading.name in MASSES)
-        words.append(f"{shortened(str(hanger.given))} of hanger added to {sides}")
+        words.append(f"{shortened(str(hanger.given))} of hanger added to m1 and m2")
     with_units = [x for x in places if all(row[x] in EMPTY or OWN_UNIT.search(row[x]) for row in sheet.rows)]
     remarks = read_as(headings, sheet.separator, comma, [*words, *sheet.remarks], with_units)
     # The uncertainty of what is shared counts for all runs together.
-    shared = {x: (read.value, Fraction(0)) for x, read in given.items() if x != "hanger"}
+    shared = {
+        x: (read.value + extra * (x in MASSES), Fraction(0)) for x, read in given.items() if x != "hanger"
+    }
     # What has no unit may have been meant in a smaller one.
     bare = {heading.name for heading in headings if not heading.unit and heading.place not in with_units}
     bare |= {x for x, read in given.items() if not OWN_UNIT.search(str(read.given))}
@@ -185,8 +187,7 @@ def read_runs(
             if heading.name in MEASURED:
                 measured[f"{number}:{heading.name[0]}{heading.number}"] = cell[:2]
             elif heading.name not in CONDITIONS:
-                extra = hanger.value if hanger and heading.name in MASSES else 0
-                inputs[heading.name] = cell.value + extra, cell.uncertainty
+                inputs[heading.name] = cell.value + extra * (heading.name in MASSES), cell.uncertainty
             elif same.setdefault(heading.name, cell)[:2] != cell[:2]:
                 why = f"differs between rows; a fit takes one {heading.name}, so fit the rows of each apart"
                 raise refused(heading.column, why)
