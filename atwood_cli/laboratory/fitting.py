@@ -11,7 +11,7 @@ from scipy.special import fdtrc
 
 from ..numbers.digits import format_number, half_range
 from ..numbers.text import counted
-from ..reading.names import read_names
+from ..reading.names import divided, read_names
 from ..solver import physics
 from ..solver.decisions import Decisions
 from ..solver.scene import Input, Scene, SceneError, parameter_of
@@ -52,6 +52,8 @@ SHARES = 1e-4, 2.0
 """An acceleration outside these shares of that without a pulley and friction must be a mistake."""
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
+DERIVED = {"I": "R", "M": "inertia"}
+"""What is needed for an input that follows from the rim mass."""
 CHECK = "check masses, heights, measurements, their units and signs"
 NO_FIT = "no pulley explains these runs, whatever its inertia and its axle's friction"
 
@@ -123,6 +125,10 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
 
     None may be given, and of the usual ones none may be neither given nor fitted.
     """
+    if derived := [x for x in divided(words) if x in DERIVED]:
+        raise SceneError(
+            "find", derived[0], f"follows from rim_mass: find that, with {DERIVED[derived[0]]} given"
+        )
     names = list(dict.fromkeys(read_names("find", words, FITTED, "quantity to fit", SYMBOLS)))
     for name in names:
         for known in QUANTITIES[name].given_by:
@@ -136,7 +142,7 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     left = [x for x in USUAL if x not in names and x not in given.values]
     if names and left:
         what, give = (" and ".join(words[x] for x in left) for words in (RESULTS, GIVE))
-        rule = f"leaves {what} open: give {give}, or find {' and '.join(left)}, too"
+        rule = f"needs {what}: give {give}, or find {' and '.join(left)}, too"
         raise SceneError("find", ",".join(names), rule)
     return names or left
 
@@ -177,7 +183,8 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
             mistakes = _mistakes(runs, used, data, given.values["gravity"])
         if not separates(data, given.values, names):
             verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
-            raise CannotSeparate(f"the runs do not {verb} {' from '.join(what)}: {vary}")
+            give = "".join(f", or give {GIVE[x]}" for x in names[1:] and names if x in GIVE)
+            raise CannotSeparate(f"the runs do not {verb} {' from '.join(what)}: {vary}{give}")
         fit = _with_results(runs, used, data, given, names)
     except CannotSeparate as error:
         message = mistakes[0][1] if mistakes else "".join(error.args)
@@ -276,7 +283,7 @@ def _causes(fit: Fitted) -> list[str]:
     if not is_open or fit.outliers:
         return []
     wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
-    late = "it is open whether all times are too long by a delay"
+    late = "the runs cannot show whether all times are too long by a delay"
     return [f"{late}{delay}; the results assume none. {wider}"]
 
 

@@ -69,7 +69,7 @@ def _scatter(fit: Fitted) -> str:
     if p_value < SELDOM:
         return f"The runs scatter more than their {by}: masses, friction or timing vary between them."
     if fit.outliers:
-        return f"Because of outliers, it is open whether the runs scatter more than their {by}."
+        return f"As there are outliers, no test says if the runs scatter more than their {by}."
     if p_value > 1 - RARE:
         as_stated = "; these are taken as stated, and may be too large" if fit.data.stated else ""
         return f"The runs scatter less than their {by}{as_stated}."
@@ -194,5 +194,8 @@ def _rows(fit: Fitted, public: Fit) -> list[list[str]]:
         masses, u, residual = (format_number(run[x]) for x in ("m1", "m2")), run["u"], run["residual"]
         numbers = cut(run[fit.runs.kind], finest), cut(run["expected"], finest), cut(u, u)
         last = "" if residual is None else f"{residual:z.2f}"
-        rows.append([run["rows"].replace(" ", ","), *masses, *numbers, last])
+        first, *others = run["rows"].split()
+        is_range = others[1:] and int(others[-1]) - int(first) == len(others)  # numbers of rows ascend
+        row = f"{first}–{others[-1]}" if is_range else ",".join([first, *others])
+        rows.append([row, *masses, *numbers, last])
     return rows
