@@ -21,11 +21,12 @@ from scipy import optimize, stats
 
 from atwood_cli import Fit, SceneError, solve
 from atwood_cli import fit as laboratory_fit
+from atwood_cli.laboratory.columns import Kind
 from atwood_cli.laboratory.estimate import Data, as_data, estimate, expected, of_measured, slope
 from atwood_cli.laboratory.fitting import conditions_of, fitted
 from atwood_cli.laboratory.report import _correlation
 from atwood_cli.laboratory.results import USUAL, published
-from atwood_cli.laboratory.runs import Kind, Runs
+from atwood_cli.laboratory.runs import Runs
 from atwood_cli.laboratory.statistics import (
     CannotSeparate,
     distances_from,

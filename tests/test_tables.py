@@ -19,7 +19,8 @@ import numpy as np
 import pytest
 
 from atwood_cli.batch.solving import Wanted, read_columns
-from atwood_cli.laboratory.runs import VOCABULARY, Runs, read_runs
+from atwood_cli.laboratory.columns import VOCABULARY
+from atwood_cli.laboratory.runs import Runs, read_runs
 from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.quantities import NAMES
 from atwood_cli.solver.scene import INPUTS

@@ -109,8 +109,9 @@ def fit_of(
     ``columns`` are words NAME=HEADING, ``labels`` headings that belong to no run.
     """
     from ..tables.headings import read_named
+    from .columns import VOCABULARY
     from .fitting import conditions_of, fitted, read_find
-    from .runs import VOCABULARY, read_runs
+    from .runs import read_runs
 
     shared = {x: _read_given(x, value) for x, value in given.items() if value is not None}
     inputs: dict[str, Input] = {x: read_input(x, None) for x in INPUTS}

@@ -11,10 +11,10 @@ from ..numbers.text import counted, sentence
 from ..output.page import Page, aligned
 from ..output.text import Report, cell, inputs_in_words
 from ..solver.scene import parameter_of
+from .columns import MEASURED
 from .estimate import ROUNDING, as_data, expected
 from .fitting import RARE, SELDOM, Fitted
 from .results import QUANTITIES, RESULTS, USUAL, Fit, cut, equation, published, rounded
-from .runs import MEASURED
 from .statistics import NORMAL_DOF
 
 COMPUTED = 1e-9

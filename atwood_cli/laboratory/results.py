@@ -106,7 +106,7 @@ class Fit(NamedTuple):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the record that ``--json`` prints, for `json`."""
-        from .runs import WORDS
+        from .columns import WORDS
 
         record: dict[str, Any] = {"version": VERSION, **self._asdict()}
         record |= {name: dict.fromkeys(QUANTITIES) | record[name] for name in ("uncertainty", "interval")}

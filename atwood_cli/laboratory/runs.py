@@ -5,70 +5,36 @@ from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from shlex import quote
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import in_quotes, shortened
-from ..reading.units import UNITS, symbol_of
-from ..solver.scene import INPUTS, MASSES, Input, InTerms, SceneError
-from ..tables.headings import (
-    EMPTY,
-    LONGEST_HEADING,
-    MASS_NAMES,
-    OF_COLUMN_BEFORE,
-    OWN_UNIT,
-    Heading,
-    Vocabulary,
-    decimal_commas_in,
-    is_unit,
-    listed,
-    name_at_start,
-    read_as,
-    read_cell,
-    read_headings,
-    recognised,
-    refused,
-    unit_within,
-)
-from ..tables.sheets import Sheet, sheet_of, units_in_cells
+from ..solver.scene import MASSES, Input, InTerms, SceneError
+from ..tables.headings import EMPTY, OWN_UNIT, Heading, decimal_commas_in, read_as, read_cell, refused
+from ..tables.sheets import sheet_of, units_in_cells
 from ..tables.sources import Unreadable
+from .columns import (
+    CONDITIONS,
+    LIKE_NUMBER,
+    MEAN,
+    MEASURED,
+    VOCABULARY,
+    Kind,
+    check_labels,
+    headings_of,
+    kind_of_runs,
+    numbers_of_rows,
+)
 
 Column = NDArray[np.float64]
 Places = NDArray[np.intp]
 Selection = NDArray[np.bool_]
-Kind = Literal["a", "time"]
-MEASURED = {"a": "acceleration", "time": "time"}
-"""The quantities that are measured, which may be repeated in further columns."""
-WORDS = {"m1": "m1", "m2": "m2", "drop": "drop h height", "a": "a acceleration", "time": "t time"}
-"""The quantities of a run, by the words of headings."""
-CONDITIONS = {"M": "M", "g": "g", "inertia": "inertia", "I": "I", "R": "R radius", "axle": "axle"}
-"""The quantities that are the same in all runs: options, or columns with one number in all rows."""
-SPELLINGS = {word: name for name, words in {**WORDS, **CONDITIONS}.items() for word in words.split()}
-SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
-VOCABULARY = Vocabulary(MASS_NAMES | SPELLINGS, repeated=MEASURED, uncertain=True)
-LIKE_UNCERTAINTY = re.compile(
-    r"±|\+/-|[Δδσ]|delta|sigma|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc|incert|fehler|s\.?d\b|d[tamh]\d?\b)"
-    r"|(?:\b|_)(?:st(?:d|andard)\.?[ _-]?(?:dev|abw)|tolerance|unsicherheit)",
-    re.IGNORECASE,
-)
-LIKE_SUM = re.compile(r"total|gesamt|\bsum|somme|diff|dif[ei]r|^\W*[Σ∑Δ]|\bm[\w ]*[-–−+] ?m", re.IGNORECASE)
-"""The headings of sums and of differences."""
-LIKE_THEORY = re.compile("theo|teór|calc|expect|predict", re.IGNORECASE)
-MEAN = r"\b(?:avg|average|mean|mittel(?:wert)?|moyenne|promedio|m[eé]dia)\b"
-LIKE_MEAN = re.compile(MEAN, re.IGNORECASE)
 STATISTIC = re.compile(rf"\s*(?:{MEAN}|s\.?d\.?|st(?:d|andard)?\.? ?dev\w*)\W*", re.IGNORECASE)
 """The cells by which a row is known to be computed from others."""
-LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
 NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
-LIKE_MASS = re.compile(
-    r"(?:\b|_)(?:m\d*|mass\w*|masas?|масс\w*|gewicht\w*|weights?|hangers?|(?:over|pay)?load|rider|beban|peso|poids"
-    r"|\w*груз\w*)(?:\b|_)",
-    re.IGNORECASE,
-)
 LARGE_MASSES = 0.5, "some masses are 0.5 kg or more", "g"
 LARGE = {
     "m1": LARGE_MASSES,
@@ -142,8 +108,8 @@ def read_runs(
     table of runs, SceneError for what does not fit the table.
     """
     sheet = units_in_cells(sheet_of(source, VOCABULARY, named, sheet_name))
-    headings = _headings(sheet, labels, named)
-    numbers = _numbers_of_rows(sheet, headings)
+    headings = headings_of(sheet, labels, named)
+    numbers = numbers_of_rows(sheet, headings)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     known = {*places, 0} if numbers else {*places}
     unread = {  # columns of numbers, by their places: the heading, and the first number
@@ -151,10 +117,10 @@ def read_runs(
         for place, (column, *cells) in enumerate(zip(sheet.columns, *sheet.rows, strict=True))
         if not (place in known or column in labels) and (cell := next(filter(LIKE_NUMBER.match, cells), ""))
     }
-    kind = _check(sheet, headings, unread, given, named)
+    kind = kind_of_runs(sheet, headings, unread, given, named)
     if kind == "a":  # a height has no effect
         headings = [heading for heading in headings if heading.name != "drop"]
-    _check_labels(headings, unread)
+    check_labels(headings, unread)
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     words = [f"{in_quotes(sheet.columns[0])} as the numbers of rows"] if numbers else []
     words += [f"{in_quotes(column)} as a label" for column, _ in unread.values()]
@@ -266,129 +232,6 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Seq
 def behind_an_error(remarks: Sequence[str]) -> str:
     """Return how the table was read, and which rows are not used, to stand behind an error."""
     return "".join(f"; {remark.rstrip('.')}" for remark in remarks)
-
-
-# Headings
-
-
-def _headings(sheet: Sheet, labels: Collection[str], named: Mapping[str, str]) -> list[Heading]:
-    """Return the columns that hold a quantity. Raises Unreadable, also for tables side by side."""
-    known = [x for x in recognised(sheet.columns, VOCABULARY, named) if x not in (*labels, *OF_COLUMN_BEFORE)]
-    if len(twice := [x for x in dict.fromkeys(known) if known.count(x) > 1]) > 1:
-        raise Unreadable(f"tables stand side by side, with {listed(twice)} in each; put one below the other")
-    return read_headings(sheet.columns, VOCABULARY, labels, named)
-
-
-def _numbers_of_rows(sheet: Sheet, headings: Sequence[Heading]) -> list[int]:
-    """Return the numbers of rows as the first column has them; none if it has others, or a quantity."""
-    cells = [row[0].strip() for row in sheet.rows]
-    column = sheet.columns[0]
-    is_read = any(heading.place == 0 for heading in headings)
-    is_mass = LIKE_MASS.search(column[:LONGEST_HEADING]) or unit_within(column, Heading(0, column, "m1"))
-    if is_read or is_mass or not all(re.fullmatch("[0-9]{1,9}", cell) for cell in cells):
-        return []
-    numbers = [*map(int, cells)]
-    return numbers if numbers == sorted({*numbers}) else []
-
-
-def _check(
-    sheet: Sheet,
-    headings: Sequence[Heading],
-    unread: Mapping[int, tuple[str, str]],
-    given: Mapping[str, Input],
-    named: Mapping[str, str],
-) -> Kind:
-    """Return what was measured, if runs have all columns. Raises Unreadable, SceneError."""
-    names = {heading.name for heading in headings}
-    measured = [heading for heading in headings if heading.name in MEASURED]
-    kinds = {(bool(heading.number), heading.name): heading.column for heading in measured}
-    if len(kinds) > 1:
-        column, beside, *_ = (kinds[kind] for kind in sorted(kinds))
-        why = "may be computed, as a mean is; number repeats, as t1, t2"
-        raise refused(column, f"stands beside {in_quotes(beside)} and {why}")
-    typed = [x for x in given if given[x].given is not None]
-    has = {x: "a" if x == "drop" and "a" in names else x for x in typed}
-    if double := [x for x in has if has[x] in names]:
-        rule = f"is not needed, as the table has {has[double[0]]}; leave it out"
-        raise SceneError(double[0], given[double[0]].given, rule)
-    left, missing = [*unread.values()], [mass for mass in MASSES if mass not in {*names, *given}]
-    if missing[1:]:  # M may be one of them
-        left += [(heading.column, "") for heading in headings if heading.name == "M"]
-    if not kinds:
-        missing.append("a" if _fitting("a", left) and not _fitting("t", left) else "t")
-    if not {"a", "drop"} & {*names, *given, *missing}:
-        missing.append("drop")
-    if missing:
-        raise Unreadable(*_missing(missing, sheet, left, named))
-    return "a" if "a" in names else "time"
-
-
-def _missing(
-    missing: Sequence[str], sheet: Sheet, left: Sequence[tuple[str, str]], named: Mapping[str, str]
-) -> tuple[str, str]:
-    """Return which columns runs need, those of the table, and options that name what is missing."""
-    why = f"runs need m1, m2, and a, or t with the height of fall, drop; there are {listed(sheet.columns)}"
-    why += f"; {', '.join(missing)} {'are' if missing[1:] else 'is'} missing"
-    is_turned = left and all(LIKE_NUMBER.match(column) for column, _ in left)
-    if is_turned or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
-        return f"{why}: make each run a row, below headings, as m1 (g),m2 (g),t (s)", ""
-    sums = [column for column in left if LIKE_SUM.search(column[0][:LONGEST_HEADING])]
-    left = [column for column in left if column not in sums and not LIKE_THEORY.search(column[0])]
-    left.sort(key=lambda column: bool(LIKE_MEAN.search(column[0])))
-    speeds = [x for x in left if re.match(r"(v|speed)\b", x[0], re.IGNORECASE) or _fitting("speed", [x])]
-    options, hints = [f"--column {quote(f'{name}={column}')}" for column, name in named.items()], ""
-    for name in missing:
-        fitting = _fitting(name, left)[: None if name in ("t", "a") else 1]
-        left = [column for column in left if column not in fitting]
-        absent = "--drop HEIGHT" if name == "drop" else f"--column {name}=HEADING"
-        options += [f"--column {quote(f'{name}={column}')}" for column, _ in fitting] or [absent]
-        if name == "m1" and not fitting:
-            compute = "; of a total and a difference, compute m1 and m2 as (total ± difference)/2"
-            hints += compute if sums else ", or --m1 0 if m2 alone hangs"
-        if name == "t" and not fitting and left:
-            compute = "; of a speed v after a fall from rest by h, compute a = v²/(2h)"
-            hints += compute if speeds else "; name each column of repeats so" if left[1:] else ""
-    return why, f"; give {' '.join(options)}{hints}"
-
-
-def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Return the unread columns that may hold a quantity, by name, or else by their unit or that of a cell.
-
-    Of several, the headings differ from the first in a number or a letter alone, as those of repeats do.
-    """
-    meaning, ranks = Heading(0, "", SPELLINGS.get(name, name)), dict[tuple[str, str], int]()
-    for column, cell in unread:
-        unit = unit_within(column, meaning)
-        fits = is_unit(unit or cell.lstrip("0123456789., "), meaning)
-        is_named = 2 * (name_at_start(column, VOCABULARY) == meaning.name)
-        is_mass = name in MASSES and LIKE_MASS.search(column[:LONGEST_HEADING])
-        ranks[column, cell] = (is_named or int(fits or bool(is_mass))) if fits or not unit else 0
-    best = [x for x, rank in ranks.items() if rank == max(ranks.values()) > 0]
-    alike = [re.sub(r"\d+|\b[A-Za-z]\b", "", column) for column, _ in best]
-    return [x for x, words in zip(best, alike, strict=True) if words == alike[0]]
-
-
-def _check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, str]]) -> None:
-    """Raise Unreadable for a column of numbers that could hold a quantity, and is no label then."""
-    measured = {own.place for own in headings if own.name in MEASURED}
-    mass = Heading(0, "", "m1")
-    uncertain = [column for column, _ in unread.values() if LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING])]
-    for place, (column, _) in unread.items():
-        unit = unit_within(column, mass)
-        is_mass = unit != "t" and symbol_of(unit) in UNITS["mass"]  # that is a time, rather than a tonne
-        if column in INPUTS:
-            raise refused(column, "has no effect on a fit")
-        if not column.strip() and place - 1 in measured:
-            raise refused(column, "has numbers and no heading, behind a measurement; give it one")
-        if column in uncertain:
-            others = f", as could {listed(uncertain[1:])}" if uncertain[1:] else ""
-            raise refused(column, f"could be an uncertainty{others}; name what of, as in 'u(t)'")
-        may_be_mass = (not unit or is_unit(unit, mass)) and LIKE_MASS.search(column[:LONGEST_HEADING])
-        if is_mass or may_be_mass:
-            if LIKE_SUM.search(column[:LONGEST_HEADING]):
-                raise refused(column, "looks like a sum or a difference of masses, which is not read")
-            way = ", or give it as --hanger if it hangs on both sides"
-            raise refused(column, "looks like a mass that is not read; add it to m1 or m2", way)
 
 
 # Rows

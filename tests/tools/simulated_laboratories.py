@@ -14,9 +14,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import optimize
 
+from atwood_cli.laboratory.columns import Kind
 from atwood_cli.laboratory.fitting import Conditions, Fitted, conditions_of, fitted
 from atwood_cli.laboratory.results import USUAL
-from atwood_cli.laboratory.runs import Kind, Runs
+from atwood_cli.laboratory.runs import Runs
 from atwood_cli.laboratory.statistics import CannotSeparate
 from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.scene import INPUTS
