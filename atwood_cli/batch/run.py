@@ -18,9 +18,8 @@ from ..numbers.text import without_blanks
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
 from ..output.text import markdown_table
-from ..reading.inputs import read_value
 from ..solver.quantities import QUANTITIES
-from ..solver.scene import MASSES, InTerms, SceneError
+from ..solver.scene import SceneError
 from ..tables.headings import ABOVE, Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import BYTE_ORDER_MARK, Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream
@@ -198,9 +197,4 @@ def _remarks(columns: ReadColumns, wanted: Wanted, table: Csv | None = None) -> 
     if any(heading.factor != 1 or heading.terms for heading in headings):
         units = {x: QUANTITIES[x].unit for x in wanted.names if x in QUANTITIES and QUANTITIES[x].unit}
         remarks += [f"results: {', '.join(f'{x} in {unit}' for x, unit in units.items())}."] if units else []
-    masses = [heading for heading in headings if heading.name in MASSES]
-    given = (read_value(x, text) for x, text in wanted.given.items() if x in MASSES)
-    bare = [heading.name for heading in masses if not heading.unit]
-    if bare and (any(heading.terms for heading in masses) or any(isinstance(x, InTerms) for x in given)):
-        remarks.append(f"{bare[0]} is in kg; for a weight give its unit, as {bare[0]} (N).")
     return [*remarks, *([f"not read: {listed(columns.not_read)}."] if columns.not_read else [])]

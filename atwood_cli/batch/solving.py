@@ -14,7 +14,7 @@ from ..explain.messages import LIKE_RADIANS, reasons_in
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly, read_value
-from ..reading.units import symbol_of
+from ..reading.units import UNITS, symbol_of
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NAMES, REGIMES, STANDARD
@@ -121,6 +121,12 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
     if measured := [column for column, name in doubtful.items() if name in MEASURED]:
         raise refused(measured[0], "has measurements, which solve and fit take, not batch")
     not_read = [column for column in columns if column not in passed]
+    mass = Heading(0, "", "M")
+    units = {column: unit_within(column, mass) for column in not_read}
+    bodies = [x for x, unit in units.items() if symbol_of(unit) in UNITS["mass"] and unit != "t"]  # a time
+    if bodies and whole and "M" not in inputs:
+        way = f", or give --column {in_quotes(f'M={bodies[0]}')} if they are the pulley's"
+        raise refused(bodies[0], "has masses, which are not read; rename it", way)
     return ReadColumns([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
 
 
@@ -155,6 +161,8 @@ class Tally:
     beyond: int = 0
     like_radians: set[bool | None] = field(default_factory=set)
     """Whether wraps are degrees that are probably radians, or turns; None for one that is not given."""
+    beside_weights: set[str] = field(default_factory=set)
+    """The masses in kg, without a unit, beside one that is given by its weight."""
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
     failures: Failures = field(default_factory=Failures)
 
@@ -189,6 +197,7 @@ class Tally:
         if self.like_radians == {True}:
             most = f"all wraps are less than {LIKE_RADIANS[1]}°"
             lines.append(f"{most}; if they are in radians or turns, say so, as in wrap (rad).")
+        lines += [f"{x} is in kg; for a weight give its unit, as {x} (N)." for x in self.beside_weights]
         lines += [f"first error, in {self.first_error}"] if self.errors else []
         return [*lines, *self.failures.lines(self.rows)]
 
@@ -218,7 +227,12 @@ def solve_cells(
     if "m1" in shared:  # perhaps all inputs are single numbers
         given["m1"] = pl.repeat(shared["m1"], len(rows), dtype=pl.Float64, eager=True)
     wraps = pl.select(pl.lit(given.get("wrap")).is_between(*LIKE_RADIANS, closed="none")).to_series()
-    tally.like_radians |= {*wraps.unique()}
+    tally.like_radians |= {*wraps.unique(), *([None] if alone else [])}
+    masses = [heading for heading in columns.headings if heading.name in MASSES]
+    options = (read_value(x, text) for x, text in wanted.given.items() if x in MASSES)
+    if any(heading.terms for heading in masses) or any(isinstance(value, InTerms) for value in options):
+        bare = [x.name for x in masses if not x.unit and x.name in cells.columns]
+        tally.beside_weights |= {x for x in bare if cells[x].cast(pl.Float64, strict=False).count()}
     terms = {heading.name: heading.terms for heading in columns.headings if heading.terms}
     solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names], terms)
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])

@@ -50,7 +50,7 @@ rows share: numbers in SI units, wrap in degrees, or in the unit of the heading,
 A row with units in its cells is solved by itself. An empty cell, NA, NULL or null is not given. Other columns
 are kept and named as not read, but one that may mean an input is refused, like radius without R. Results
 follow each row; a row with too few or too many cells is an error. Piped rows are solved as they come. Cells
-are read as doubles; solve reads 0.1 as exactly 1/10, so its last digit may differ.
+become doubles in SI units; solve reads 0.1 as exactly 1/10, so last digits may differ.
 
 The usual seven results are {", ".join(STANDARD)}.
 The exit status is 1 if a row has an error, or if a quantity that --only names has no value in any row.

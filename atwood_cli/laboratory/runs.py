@@ -149,7 +149,13 @@ def read_runs(
             unused["a mean or a standard deviation is no run"].append(number)
             continue
         inputs, measured = dict[str, Number](), dict[str, Number]()
-        for heading, cell in _read_row(number, row, headings, comma, by):
+        try:
+            cells = _read_row(number, row, headings, comma, by)
+        except Unreadable:
+            if str(number) not in map(str, without):
+                raise
+            continue
+        for heading, cell in cells:
             if heading.name in MEASURED:
                 measured[f"{number}:{heading.name[0]}{heading.number}"] = cell[:2]
             elif heading.name not in CONDITIONS:

@@ -40,7 +40,7 @@ ALIGNED = {-1: ("right", "top"), 0: ("center", "center"), 1: ("left", "bottom")}
 NAMES_IN_WORDS = re.compile(r"\b(mu|mu_k|(?:inertia|wrap|axle)(?= (?:=|from)))\b")
 SIDES_IN_WORDS = re.compile(r"\b[mTW][12]\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
-EXPONENT, MINUS = re.compile(r"(?<=\d)e\+?(-?\d+)"), re.compile(r"(?<![\w.)])-(?=\d)")
+EXPONENT, MINUS = re.compile(r"(?<=\d)e\+?(-?)0*(\d+)"), re.compile(r"(?<![\w.)])-(?=\d)")
 SUPERSCRIPTS, SUBSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"), str.maketrans("12", "₁₂")
 STYLE: Any = {
     "font.family": "sans-serif",
@@ -134,7 +134,7 @@ def typeset(words: str) -> str:
     words = re.sub(r" \(--[^)]*\)", "", words)  # options
     words = LONG_DIGITS.sub(r"\1…", words)
     words = SIDES_IN_WORDS.sub(lambda name: name[0].translate(SUBSCRIPTS), words)
-    words = EXPONENT.sub(lambda power: f" × 10{power[1].translate(SUPERSCRIPTS)}", words)
+    words = EXPONENT.sub(lambda e: f" × 10{(e[1] + e[2]).translate(SUPERSCRIPTS)}", words)
     return MINUS.sub("−", words)
 
 
