@@ -192,7 +192,9 @@ def test_a_key_that_is_refused_later_says_where(batch: Batch, monkeypatch: pytes
 
 def test_the_first_error_is_that_of_the_whole_table(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sources, "BLOCK_BYTES", 8)
-    ran = batch("m1,m2\n" + "1,3\n" * 9 + "1,x\n" + "1,3\n" * 9 + "1,y\n", "--only regime")
+    table = "m1,m2\n" + "1,3\n" * 9 + "1,x\n" + "1,3\n" * 8 + "3,1\n1,y\n"
+    ran = batch(table, "--only regime --expect a>0")
+    assert "atwood: in row 19: expected a>0; it is -4.9" in ran.err
     said = "atwood: 20 rows: 18 no-slip; 2 errors.\natwood: first error, in row 10: m2 'x' is"
     assert ran.err.startswith(said)
 

@@ -183,6 +183,7 @@ UNIT_OF_M1 = "'m1 (kg)' as m1 in kg; 'm2' in kg, 'time' in s, as no unit is give
         (TABLE, ""),
         ("\ufeff" + TABLE.replace("\n", "\r\n"), ""),
         (TABLE.replace("\n", "\n\n"), ""),
+        (TABLE.replace("\n", "\r"), ""),  # as Excel saves CSV for an old Macintosh
         (TABLE.replace("\n", ",,\n", 1), ""),
         (TABLE.replace("\n", ",,\n"), ""),
         (re.sub("(?<=[0-9])\n", ",,\n", TABLE), ""),  # a fit of it ended in a traceback

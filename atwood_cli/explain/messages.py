@@ -190,7 +190,8 @@ def remarks(answers: Answers) -> list[str]:
         )
     sentences += [*_on_weights(answers), *on_units(answers)]
     if decided.motion.finds == "g" and decided.scene.g < LOW_GRAVITY and not decided.has_axle_friction:
-        sentences.append("If `g` is that of the Earth, the axle has friction: find it with `--find axle`.")
+        causes = "more inertia, or friction of the axle (`--find axle`)"
+        sentences.append(f"`g` is low for the Earth; {causes}, would slow the masses, too.")
     mu_k = decided.scene.mu_k
     if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:
         sentences.append("`mu_k` has no effect here, as the string does not slip.")
