@@ -189,7 +189,7 @@ def test_hostile_uncertainties_come_to_an_end(given: dict[str, str]) -> None:
 def test_all_that_have_no_uncertainty_are_counted() -> None:
     s = solve(m1=1, m2=3, M=10, R="0.5±1e400")
     without = [name for name, u in s.uncertainty.items() if u is None and getattr(s, name) is not None]
-    assert f"and {len(without) - 3} more: R = 0 m makes no valid scene" in " ".join(s.notes)
+    assert f"and {len(without) - 3} more: at R = 0 m, there is no valid scene" in " ".join(s.notes)
 
 
 # How they are shown

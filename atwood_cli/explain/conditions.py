@@ -22,7 +22,7 @@ from ..solver.answers import TOO_SMALL, Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NO_NEED, QUANTITIES, REGIMES, Undetermined
 from ..solver.scene import INPUTS, MEASURED, Angle, SceneError, with_unit
-from .messages import unmarked
+from .messages import ends_nearby, unmarked
 
 COMPARISON = re.compile("([^<>=]*)(<=|>=|==|<|>)([^<>=]*)")
 OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
@@ -97,7 +97,7 @@ class Failures:
 
 def failure(answers: Answers, expected: Condition) -> str:
     """Say what holds instead of what is expected, "" if that holds."""
-    ends = answers.nearby()
+    ends = [end.answers for _, _, end in ends_nearby(answers)]
     if not _holds(answers, expected):
         instead = unmarked(_instead(answers, expected))
     elif failing := [end for end in ends if not (end and _holds(end, expected))]:

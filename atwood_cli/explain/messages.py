@@ -5,17 +5,26 @@ Backticks mark names, as in the messages of `Undetermined`: `unmarked` takes the
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
+from typing import Any
 
-from ..numbers.digits import SHOWN_DIGITS, Rounding, as_typed, format_number, rounding_apart_from, strip_zeros
+from ..numbers.digits import (
+    SHOWN_DIGITS,
+    Rounding,
+    as_typed,
+    format_number,
+    rounding_apart_from,
+    strip_zeros,
+    to_digits,
+)
 from ..reading.units import MAX_MAGNITUDE
 from ..solver.answers import Answers
 from ..solver.physics import critical_heavier_mass
 from ..solver.quantities import FROM_MOTION, NAMES, QUANTITIES
-from ..solver.scene import MASSES, with_unit
+from ..solver.scene import MASSES, parameter_of, with_unit
 
 
 def unmarked(words: str) -> str:
@@ -47,7 +56,70 @@ def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
         x for x, answer in by_name.items() if answer.value is not None and answers.uncertainty(x) is None
     ]
     sentences += in_typed_units(answers, names)
-    return [*sentences, *answers.doubts(), *map(unmarked, answers.open_ended(without))]
+    return [*sentences, *doubts(answers), *map(unmarked, without_uncertainty(answers, without))]
+
+
+WITHIN = {1: "one standard uncertainty", 2: "two standard uncertainties"}
+"""A decision is in doubt if it differs within so many standard uncertainties of an input."""
+DOUBTFUL = {
+    "Which mass is heavier": "sign",
+    "Whether the axle holds the difference": "axle_holds",
+    "Whether the string slips": "regime",
+}
+"""The decisions that may be in doubt, and their attributes of `Decisions`."""
+MOST_NAMED = 3
+"""The most quantities that a sentence names."""
+
+
+def ends_nearby(answers: Answers) -> Iterator[tuple[str, str, Any]]:
+    """Yield how far an input is off, its name, and the end: within two uncertainties, the nearest first."""
+    for n, within in WITHIN.items():
+        for x, pair in answers.ends_at(n).items():
+            yield from ((within, x, end) for end in pair)
+
+
+def doubts(answers: Answers) -> list[str]:
+    """Say which decisions differ near the scene, and at which nearest end."""
+    sentences: dict[str, str] = {}
+    for within, x, end in ends_nearby(answers):
+        for what, name in DOUBTFUL.items():
+            if end.answers and getattr(end.answers.decided, name) != getattr(answers.decided, name):
+                place = _at(answers, x, end.input)
+                sentences.setdefault(
+                    what,
+                    f"{what} is in doubt: the answer differs within {within}, at {place}."
+                    " Results use the inputs as given.",
+                )
+                break  # others follow from it
+    return [*sentences.values()]
+
+
+def without_uncertainty(answers: Answers, names: Iterable[str]) -> list[str]:
+    """Say which quantities have no value at an end of an input, and their value at the other end."""
+    groups: dict[str, list[str]] = {}
+    for name in names:
+        spread = answers.spread(name)
+        for x, pair in spread.ends.items() if spread else ():
+            if missing := [i for i in (0, 1) if pair[i].value is None]:
+                i = missing[0]
+                place, other_place = (_at(answers, x, answers.ends_at(1)[x][j].input) for j in (i, 1 - i))
+                value, words = pair[1 - i].value, name
+                if value is not None and value != spread.here:
+                    shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(value)))
+                    words += f" ({with_unit(shown, QUANTITIES[name].unit)} at {other_place})"
+                groups.setdefault(f"at {place}, {pair[i].reason}", []).append(words)
+    sentences = []
+    for reason, group in groups.items():
+        others = len(group) - MOST_NAMED
+        more = f" and {others} more" if others > 0 else ""
+        sentences.append(f"No uncertainty of {', '.join(group[:MOST_NAMED])}{more}: {reason}.")
+    return sentences
+
+
+def _at(answers: Answers, x: str, value: Fraction) -> str:
+    """Say a value of an input, with the unit that it was given in: mu = 0.35."""
+    unit = getattr(answers.decided.scene.given_as(x), "unit", parameter_of(x).unit)
+    return f"{x} = {with_unit(as_typed(value), unit)}"
 
 
 LIMITS = {

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
 from decimal import Decimal
 from fractions import Fraction
@@ -114,17 +114,13 @@ class Answers:
         """Return the percentage of each uncertain input in a variance, {} if there is none or it is 0."""
         return {}
 
-    def doubts(self) -> list[str]:
-        """Say which decisions differ near the scene."""
-        return []
+    def ends_at(self, n: int) -> Mapping[str, tuple[Any, Any]]:
+        """Return the scenes with each uncertain input n standard uncertainties less, and more."""
+        return {}
 
-    def open_ended(self, names: Iterable[str]) -> list[str]:
-        """Say which quantities have no value at an end of an input."""
-        return []
-
-    def nearby(self) -> list[Answers | None]:
-        """Return the answers with each input one and two uncertainties off, None if that is no scene."""
-        return []
+    def spread(self, name: str) -> Any:
+        """Return the values of a quantity at these ends, None if there are none."""
+        return None
 
     def rounded(self, name: str, round_: Rounding[Decimal]) -> Decimal:
         """Return the value of a quantity that exists, rounded in another way."""

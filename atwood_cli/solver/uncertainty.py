@@ -11,44 +11,24 @@ uncertainty is right to `RIGHT_DIGITS` digits.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..numbers.digits import (
-    SHOWN_DIGITS,
-    Rounding,
-    as_typed,
-    format_number,
-    half_range,
-    is_infinite,
-    strip_zeros,
-    to_digits,
-    to_double,
-)
+from ..numbers.digits import Rounding, half_range, is_infinite, to_digits, to_double
 from ..numbers.interval import ZERO, decimal_context
 from .answers import TOO_SMALL, Answer, Answers
 from .inverse import found_inputs
-from .quantities import QUANTITIES, Undetermined
-from .scene import Scene, parameter_of, with_unit
+from .quantities import Undetermined
+from .scene import Scene, parameter_of
 
 DIGITS, RIGHT_DIGITS = 48, 15
 NEGLIGIBLE = Decimal("1e-30")
 CONTEXT = decimal_context(2 * DIGITS, ROUND_HALF_EVEN)
 """Sums and products of values lose no digit that counts."""
 
-MOST_NAMED = 3
-"""The most quantities that a sentence names."""
-WITHIN = {1: "one standard uncertainty", 2: "two standard uncertainties"}
-"""A decision is in doubt if it differs within so many standard uncertainties of an input."""
-NO_SCENE, NOTHING_FITS = "makes no valid scene", "nothing fits what was measured"
-DOUBTFUL = {
-    "Which mass is heavier": "sign",
-    "Whether the axle holds the difference": "axle_holds",
-    "Whether the string slips": "regime",
-}
-"""The decisions that may differ at an end of an input, and their attributes of `Decisions`."""
+NO_SCENE, NOTHING_FITS = "there is no valid scene", "nothing fits what was measured"
 
 
 class End(NamedTuple):
@@ -91,7 +71,7 @@ class UncertainAnswers(Answers):
     def given(self) -> tuple[Any, ...]:
         return *super().given, self.uncertain
 
-    def _ends_at(self, n: int) -> dict[str, tuple[End, End]]:
+    def ends_at(self, n: int) -> dict[str, tuple[End, End]]:
         """Return each input n standard uncertainties below and above, each solved once."""
         if n not in self._ends:
             self._ends[n] = {
@@ -123,14 +103,14 @@ class UncertainAnswers(Answers):
             return End(number, None, NOTHING_FITS)
         return End(number, answers)
 
-    def _spread(self, name: str) -> Spread | None:
+    def spread(self, name: str) -> Spread | None:
         """Compute a quantity at all ends, once; None if it has no finite value in the scene."""
         if name in self._spreads:
             return self._spreads[name]
         here = End(Fraction(0), self.rounded_to(DIGITS)).answer(name).value
         if here is None or is_infinite(here):
             return None
-        ends = {x: [end.answer(name) for end in pair] for x, pair in self._ends_at(1).items()}
+        ends = {x: [end.answer(name) for end in pair] for x, pair in self.ends_at(1).items()}
         steps = {}
         with localcontext(CONTEXT):
             for x, pair in ends.items():
@@ -149,7 +129,7 @@ class UncertainAnswers(Answers):
         """
         value, reason = self.answer(name)
         has_none = value is None or reason == TOO_SMALL or name == "regime"
-        spread = None if has_none else self._spread(name)
+        spread = None if has_none else self.spread(name)
         if spread is None or any(answer.value is None for pair in spread.ends.values() for answer in pair):
             return None
         digits = digits or self.digits
@@ -157,70 +137,9 @@ class UncertainAnswers(Answers):
         return u if digits else to_double(u)
 
     def budget(self, name: str, round_: Rounding[Any] | None = None) -> dict[str, Any]:
-        spread = self._spread(name) if self.uncertainty(name) else None
+        spread = self.spread(name) if self.uncertainty(name) else None
         if spread is None or not spread.steps or is_infinite(spread.variance):
             return {}
         with localcontext(CONTEXT):
             shares = {x: 100 * spread.steps.get(x, ZERO) ** 2 / spread.variance for x in self.uncertain}
         return {x: (round_ or self.round)(to_digits(RIGHT_DIGITS)(share)) for x, share in shares.items()}
-
-    # In sentences
-
-    @property
-    def _nearby_ends(self) -> list[tuple[str, str, End]]:
-        """Each input one and two uncertainties off, the nearest ends first, and how far these are."""
-        pairs = [(within, x, pair) for n, within in WITHIN.items() for x, pair in self._ends_at(n).items()]
-        return [(within, x, end) for within, x, pair in pairs for end in pair]
-
-    def doubts(self) -> list[str]:
-        """Say which of the `DOUBTFUL` decisions differ near the scene, and at which nearest end."""
-        sentences: dict[str, str] = {}
-        for within, x, end in self._nearby_ends:
-            for what, name in DOUBTFUL.items():
-                if end.answers and getattr(end.answers.decided, name) != getattr(self.decided, name):
-                    sentences.setdefault(
-                        what,
-                        f"{what} is in doubt: the answer differs within {within}, at {self._at(x, end)}."
-                        " Results use the inputs as given.",
-                    )
-                    break  # others follow from it
-        return [*sentences.values()]
-
-    def nearby(self) -> list[Answers | None]:
-        return [end.answers for _, _, end in self._nearby_ends]
-
-    def open_ended(self, names: Iterable[str]) -> list[str]:
-        """Say which quantities have no value at an end of an input, and their bound from the other end."""
-        groups: dict[str, list[str]] = {}
-        for name in names:
-            spread = self._spread(name)
-            if spread is None:
-                continue
-            for x, pair in spread.ends.items():
-                if missing := [i for i in (0, 1) if pair[i].value is None]:
-                    i = missing[0]
-                    place, why = self._at(x, self._ends_at(1)[x][i]), pair[i].reason
-                    reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
-                    other_end = self._at(x, self._ends_at(1)[x][1 - i])
-                    words = _one_sided(name, spread.here, pair[1 - i].value, other_end)
-                    groups.setdefault(reason, []).append(words)
-        sentences = []
-        for reason, group in groups.items():
-            others = len(group) - MOST_NAMED
-            more = f" and {others} more" if others > 0 else ""
-            sentences.append(f"No uncertainty of {', '.join(group[:MOST_NAMED])}{more}: {reason}.")
-        return sentences
-
-    def _at(self, x: str, end: End) -> str:
-        """Say an input at an end, with its unit: "mu = 0.35"."""
-        given = self.decided.scene.given_as(x)
-        unit = getattr(given, "unit", parameter_of(x).unit)
-        return f"{x} = {with_unit(as_typed(end.input), unit)}"
-
-
-def _one_sided(name: str, here: Decimal, other: Decimal | None, place: str) -> str:
-    """Name a quantity without an uncertainty, with the value at the only end that has one, a place."""
-    if other is None or other == here:
-        return name
-    value = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other)))
-    return f"{name} ({with_unit(value, QUANTITIES[name].unit)} at {place})"
