@@ -102,11 +102,11 @@ BY_DEFINITION = {
     "length": "m 1 km 1000 dm 0.1 cm 0.01 mm 0.001 um 0.000001 in 0.0254 ft 0.3048 yd 0.9144",
     "angle": "deg 1 ° 1 turn 360 turns 360 rad 1",
     "time": "s 1 ms 0.001 us 0.000001 min 60 h 3600",
-    "force": "N 1 mN 0.001 kN 1000 lbf 4.4482216152605 kgf 9.80665",
+    "force": "N 1 mN 0.001 daN 10 kN 1000 lbf 4.4482216152605 kip 4448.2216152605 kgf 9.80665",
     "torque": "N_m 1 mN_m 0.001 N_cm 0.01 lbf_ft 1.3558179483314004 lbf_in 0.1129848290276167",
     "acceleration": "m/s2 1 m_s-2 1 cm/s2 0.01 ft/s2 0.3048 N/kg 1",
     "angular acceleration": "rad/s2 1 rad_s-2 1",
-    "speed": "m/s 1 cm/s 0.01 mm/s 0.001 km/h 5/18 ft/s 0.3048",
+    "speed": "m/s 1 cm/s 0.01 mm/s 0.001 km/h 5/18 ft/s 0.3048 ft/min 0.00508",
     "angular speed": "rad/s 1",
     "moment of inertia": "kg_m2 1 kg_cm2 0.0001 g_cm2 0.0000001 lb_ft2 0.0421401100938048 lb_in2 0.0002926396534292",
 }

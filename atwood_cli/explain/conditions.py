@@ -17,11 +17,11 @@ from ..numbers.digits import (
 )
 from ..numbers.text import counted, in_quotes
 from ..reading.names import NAMES_BY_SYMBOL, read_name
-from ..reading.units import GRAVITY, Malformed, TypedNumber, read_number
+from ..reading.units import GRAVITY, UNITS, Malformed, TypedNumber, read_number
 from ..solver.answers import TOO_SMALL, Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NO_NEED, QUANTITIES, REGIMES, Undetermined
-from ..solver.scene import INPUTS, MEASURED, Angle, SceneError, with_unit
+from ..solver.scene import INPUTS, MEASURED, Angle, Scene, SceneError, with_unit
 from .messages import ends_nearby, unmarked
 
 COMPARISON = re.compile("([^<>=]*)(<=|>=|==|<|>)([^<>=]*)")
@@ -36,10 +36,11 @@ MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
 DIMENSIONS = {
     **{parameter.unit: parameter.dimension for parameter in (*INPUTS.values(), *MEASURED.values())},
-    **{"N": "force", "N m": "torque"},
+    **{"N": "force", "N m": "torque", "kg": "mass or force"},
 }
 """The dimension of a quantity, by its unit."""
-
+AS_WEIGHT = "weight"
+"""The unit of a mass that is compared by its weight (N)."""
 
 SIGNED = ("acceleration", "torque", "rim_acceleration", "angular_acceleration")
 """The quantities with the sign of the motion."""
@@ -66,6 +67,8 @@ def read_condition(typed: str) -> Condition:
         value = read_number(number, DIMENSIONS.get(QUANTITIES[name].unit))
     except Malformed as error:
         raise SceneError("expect", typed, f"compares with {in_quotes(number)}, which {error}") from None
+    if QUANTITIES[name].unit == "kg" and value.unit in UNITS["force"]:
+        value = value._replace(unit=AS_WEIGHT)
     if value.uncertainty and sign != "==":
         rule = "compares with an uncertain number, which only == takes: it holds within the uncertainty"
         raise SceneError("expect", typed, rule)
@@ -169,6 +172,7 @@ def _bound(machine: Any, number: TypedNumber) -> Any:
     return machine.ar.number(_in_si(number, machine.scene))
 
 
-def _in_si(number: TypedNumber, scene: Any) -> Fraction:
-    """Return the number in SI units; a multiple of g is of the scene's."""
-    return Fraction(number.value) * (scene.g if number.unit == GRAVITY else 1)
+def _in_si(number: TypedNumber, scene: Scene) -> Fraction:
+    """Return the number in SI units; multiples of g and weights are by the scene's g."""
+    by = {GRAVITY: scene.g, AS_WEIGHT: 1 / scene.g}
+    return Fraction(number.value) * by.get(number.unit, 1)

@@ -53,12 +53,12 @@ def without_blanks(text: str) -> str:
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
-    """Return a hint at the word that was probably meant, "" if none is near."""
+    """Return a hint at the words probably meant, those that begin so, or else one; "" if none is near."""
     from difflib import get_close_matches
 
-    words = list(words) if word else []
-    close = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
-    return f"; did you mean {close[0]}?" if close else ""
+    word, words = word.lower(), list(words) if word else []
+    close = [longer for longer in words if longer.startswith(word)][:3] or get_close_matches(word, words, n=1)
+    return f"; did you mean {' or '.join(close)}?" if close else ""
 
 
 @contextmanager

@@ -127,7 +127,8 @@ def _checked(name: str, given: Given, number: TypedNumber, signed: bool) -> Any:
     too_small = (value < 0 and not signed) or (value == 0 and not parameter.may_be_zero)
     too_small &= not parameter.signed
     if too_small or (abs(value) == inf and not parameter.may_be_infinite):
-        raise SceneError(name, given, parameter.domain)
+        massless = "; a pulley without inertia is M = 0" if name == "I" and value == 0 else ""
+        raise SceneError(name, given, parameter.domain + massless)
     if parameter.dimension == "angle":
         return Angle(value, "rad" if unit == "rad" else "°")
     terms = terms_of(parameter, unit)

@@ -21,6 +21,12 @@ NAMES_BY_SYMBOL = {
     _plain(typed): name for name, about in QUANTITIES.items() for typed in (name, about.symbol)
 }
 
+MEANT = {
+    **dict.fromkeys("mu mumin leastmu mucrit coefficient frictioncoefficient".split(), "mu_verge"),
+    **dict.fromkeys("mcrit criticalmass".split(), "critical_pulley_mass"),
+}
+"""What other words probably mean, in plain small letters."""
+
 
 def read_names(
     parameter: str,
@@ -49,16 +55,17 @@ def read_name(
         return word
     if (name := symbols.get(_plain(word), "")) in known:
         return name
-    known_names = "see atwood quantities" if kind == "quantity" else f"there are {', '.join(known)}"
+    small = _plain(word).lower()
+    alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
+    meant = MEANT.get(small, alike[0] if len(alike) == 1 else "")
+    hint = f"; did you mean {meant}?" if meant in known else ""
+    known_names = "; see atwood quantities" if kind == "quantity" else f"; there are {', '.join(known)}"
     a_kind = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
     if kind == "quantity" and word in MEASURED_NAMES and word not in INPUTS:
         raise SceneError(parameter, word, "follows from a measured motion, which only solve takes")
     if word in INPUTS and not kind.startswith("input"):
-        raise SceneError(parameter, word, f"is an input, not {a_kind}; {known_names}")
-    small = _plain(word).lower()
-    alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
-    hint = f"did you mean {alike[0]}?" if len(alike) == 1 else known_names
-    raise SceneError(parameter, word, f"is not {a_kind}{nearest(word, known) or f'; {hint}'}")
+        raise SceneError(parameter, word, f"is an input, not {a_kind}{hint or known_names}")
+    raise SceneError(parameter, word, f"is not {a_kind}{hint or nearest(word, known) or known_names}")
 
 
 def divided(typed: Iterable[str]) -> list[str]:

@@ -31,14 +31,20 @@ UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
     },
     "angle": {"deg": "1", "°": "1", "turn": "360", "turns": "360", "rad": "1"},
     "time": {"s": "1", "ms": "1e-3", "us": "1e-6", "min": "60", "h": "3600"},
-    "force": {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY},
+    "force": {
+        "N": "1", "mN": "1e-3", "daN": "10", "kN": "1e3",
+        "lbf": POUND_FORCE, "kip": POUND_FORCE * 1000, "kgf": STANDARD_GRAVITY,
+    },
     "torque": {
         "N m": "1", "mN m": "1e-3", "N cm": "1e-2",
         "lbf ft": POUND_FORCE * FOOT, "lbf in": POUND_FORCE * INCH,
     },
     "acceleration": {"m/s2": "1", "m s-2": "1", "cm/s2": "1e-2", "ft/s2": FOOT, "N/kg": "1"},
     "angular acceleration": {"rad/s2": "1", "rad s-2": "1"},
-    "speed": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3", "km/h": Fraction(5, 18), "ft/s": FOOT},
+    "speed": {
+        "m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3", "km/h": Fraction(5, 18),
+        "ft/s": FOOT, "ft/min": FOOT / 60,
+    },
     "angular speed": {"rad/s": "1"},
     "moment of inertia": {
         "kg m2": "1", "kg cm2": "1e-4", "g cm2": "1e-7", "lb ft2": POUND * FOOT**2, "lb in2": POUND * INCH**2,

@@ -145,7 +145,9 @@ def _impossible(scene: Scene) -> str:
         return "implies that both masses are 0"
     elif getattr(scene, finds) < 0:  # 0 is a mass
         shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(getattr(scene, finds))))
-        return f"implies {finds} = {shown} {INPUTS[finds].unit}, which cannot be negative; check all inputs"
+        rule = f"implies {finds} = {shown} {INPUTS[finds].unit}, which cannot be negative; check all inputs"
+        rises = f"; if the heavier mass still rises, axle friction is {shown[1:]} N"
+        return rule + (rises if finds == "axle" else "")
     return ""
 
 
