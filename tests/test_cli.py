@@ -67,21 +67,6 @@ def test_a_printed_solution_fits_the_terminal_and_has_no_colours(monkeypatch: py
     assert "\x1b" not in shown
 
 
-# JSON
-
-
-@pytest.mark.parametrize("command", ["solve", "contact --M 1", "sweep --M 1:2:2"])
-def test_json_has_numbers_that_are_no_decimals_as_results(atwood: Atwood, command: str) -> None:
-    """A decimal is exact, whatever --digits."""
-    given = "--m1 1.0000000000000000001 --m2 3 --g 25/3 --R 1 --axle 25/324Nm --json"
-    for digits, g in (("", 8.333333333333334), ("--digits 4", 8.333)):
-        ran = atwood(*f"{command} {given} {digits}".split())
-        assert '"m1": 1.0000000000000000001,\n' in ran.out
-        scene = json.loads(ran.out)["scene"]
-        assert scene["g"] == g
-        assert float(scene["axle"].removesuffix(" Nm")) == pytest.approx(25 / 324, 1e-3 if digits else 1e-15)
-
-
 # --only
 
 

@@ -19,10 +19,10 @@ import numpy as np
 import pytest
 from scipy import optimize, stats
 
-from atwood_cli import Fit, SceneError, solve
+from atwood_cli import Fit, SceneError
 from atwood_cli import fit as laboratory_fit
 from atwood_cli.laboratory.columns import Kind
-from atwood_cli.laboratory.estimate import Data, as_data, estimate, expected, of_measured, slope
+from atwood_cli.laboratory.estimate import Data, as_data, estimate, expected
 from atwood_cli.laboratory.fitting import conditions_of, fitted
 from atwood_cli.laboratory.report import _correlation
 from atwood_cli.laboratory.results import USUAL, published
@@ -45,9 +45,7 @@ from .tools.simulated_laboratories import (
     DELAYS,
     NOTHING,
     OTHERS,
-    C,
     Design,
-    F,
     G,
     blunders_named,
     by_scipy,
@@ -171,22 +169,6 @@ def test_the_scatter_of_times_is_found_beside_uncertain_masses() -> None:
     whole = fitted(uncertain, conditions_of(NOTHING), USUAL)
     assert 0.01 < sqrt(whole.line.between) < 0.04
     assert not whole.data.scatter.any()
-
-
-@pytest.mark.parametrize("kind", ["a", "time"])
-def test_slopes_are_those_of_differences(kind: Kind) -> None:
-    l, h, drop, measured = np.array([[0.2, 0.25], [0.207, 0.26], [0.98, 0.5], [4.0, 2.0]])
-    data = data_of(kind, l, h, drop, measured)
-    values: dict[str, Any] = {"rim_mass": C, "axle": F, "gravity": G, "delay": 0.0}
-    for i in (0, 1):
-        a = float(solve(m1=l[i], m2=h[i], M=C, inertia=1, axle=F, g=G).acceleration or 0)
-        wanted = a if kind == "a" else sqrt(2 * drop[i] / a)
-        assert expected(data, values)[i] == pytest.approx(wanted, rel=1e-13)
-    for name in ["rim_mass", "axle", "gravity", "l", "h", *["drop"] * (kind == "time")]:
-        here: Any = values.get(name, getattr(data, name, None))
-        ends = [expected(data, {**values, name: here * (1 + side * 1e-6)}) for side in (-1, 1)]
-        by_difference = (ends[1] - ends[0]) / (2e-6 * here)
-        assert -slope(of_measured, data, values, name) == pytest.approx(by_difference, rel=1e-5)
 
 
 # Outliers, by hand
@@ -410,22 +392,6 @@ def test_what_is_left_out_has_no_part() -> None:
         assert [left[x] for x in ("interval", "chi2")] == [empty[x] for x in ("interval", "chi2")]
     whole, row = (found(table, f"--drop 1 --without {one}") for one in ("1:t1,1:t2,1:t3", "1"))
     assert whole["interval"] == row["interval"]
-
-
-@pytest.mark.parametrize("far", [-1.9, 0.5])
-def test_of_two_repeats_the_one_far_from_the_line_is_named_whatever_its_sign(far: float) -> None:
-    rows = [(1, 2, 3.2, 3.21), (2, 1, -3.2, -3.21), (1, 1.5, 2.2, far), (2, 3, 2, 1.99), (3, 1, -4.8, -4.81)]
-    notes = found(table_of(rows, "m1,m2,a1,a2"), "--axle 0")["notes"]
-    assert [note for note in notes if note.startswith(f"Row 3: a2 = {far}")]
-
-
-def test_repeats_without_scatter_are_judged_by_the_step_of_their_digits() -> None:
-    """The scatter is known then, and the test is that of χ²: it was called an F test."""
-    rows = [(0.2, 0.22, 2.1, 2.1), (0.2, 0.23, 1.7, 1.7), (0.2, 0.24, 1.5, 1.5), (0.2, 0.25, 1.3, 1.3)]
-    result = found(table_of(rows, "m1,m2,t1,t2"), "--drop 1")
-    (note,) = (note for note in result["notes"] if "χ²" in note)
-    assert "F test" not in note
-    assert f"p = {stats.chi2.sf(result['chi2'], 2):.2g}" in note
 
 
 # What it needs and how it is printed

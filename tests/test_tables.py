@@ -66,13 +66,6 @@ def test_the_grammar_of_headings(want: str, heading: str) -> None:
     assert headings.recognised([heading], VOCABULARY) == [heading] * bool(want)
 
 
-def test_names_of_scenes_tell_capitals_apart() -> None:
-    columns = "m1 (g)|m2 [g]|M|m|mu|mu_k|g|G|R/cm|r|wrap (turn)|axle (mN)|u(m1)".split("|")
-    found = [f"{one.column}: {one.name}, {one.factor}" for one in headings.read_headings(columns, SCENES)]
-    plain, units = "M: M, 1|mu: mu, 1|mu_k: mu_k, 1|g: g, 1", "R/cm: R, 1/100|wrap (turn): wrap, 360"
-    assert "|".join(found) == f"m1 (g): m1, 1/1000|m2 [g]: m2, 1/1000|{plain}|{units}|axle (mN): axle, 1/1000"
-
-
 @pytest.mark.parametrize("columns", ["m1|m_1", "t1|time 1", "m1 (s)", "a|Team|±", "m1|a_err", "a|±|u(a)", "mu (g)", "wrap (kg)"])  # fmt: skip
 def test_a_column_that_is_refused_may_pass_as_a_label(columns: str) -> None:
     """Its last could be two things, or has a wrong unit; `cases/fit.md` and `cases/batch.md` have the sentences."""
@@ -212,15 +205,6 @@ def test_what_stands_around_a_table(read: Any, table: str | bytes, remark: str) 
     assert numbers(runs) == exactly("0.2 0.207 3.99 0 0 0", "0.201 0.206 5.02 0 0 0")
     assert runs.rows == [[1], [2]]
     assert runs.remarks == ([f"read as: {remark}."] if remark else [])
-
-
-def test_columns_of_other_names(read: Any) -> None:
-    zeit = "m1;m2;Größe;Zeit\n0,2;0,207;x;3,99\n0,201;0,206;y;5,02\n".encode("cp1252")
-    words = TABLE.replace("m1,m2,time", "mass one (kg),mass two (kg),Trial 1 (s)")
-    named = {"mass one (kg)": "m1", "mass two (kg)": "m2", "Trial 1 (s)": "t"}
-    for runs in (read(zeit, Zeit="t"), read(words, **named)):
-        assert numbers(runs) == exactly("0.2 0.207 3.99 0 0 0", "0.201 0.206 5.02 0 0 0")
-    assert read("m1,m2,A,B\n1,2,3,4\n", A="t", B="t").cells == ["1:t1", "1:t2"]
 
 
 def test_the_step_of_readings_is_that_of_the_last_digit(read: Any) -> None:

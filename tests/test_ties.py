@@ -20,8 +20,6 @@ from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 
-from .tools.running import Atwood
-
 F = Fraction
 
 
@@ -144,11 +142,6 @@ def test_friction_in_which_the_capstan_ratio_cancels(l: int, q: int, digits: int
     assert found == to_digits(digits)(exact)
 
 
-def test_torque_along_the_arc_is_a_tie_like_that_of_the_ends() -> None:
-    found = contact(Answers(read_scene({"m1": 1, "m2": "1.5", "M": inf}), 6), 2).balance["torque"]
-    assert found == {"contact": Decimal("4.90332"), "ends": Decimal("4.90332")}
-
-
 def test_a_tie_in_an_array_stops_no_other_row() -> None:
     g = 6004799503160661 * 2.0**-49
     rows: dict[str, Any] = {"M": [inf, 2.0], "mu": [0.25, 0.3], "wrap": [90, 180], "g": g}
@@ -157,16 +150,3 @@ def test_a_tie_in_an_array_stops_no_other_row() -> None:
     exact = -2 * 51 * F(g) * F(1, 4) / (1 + F(1, 16))
     assert found[0] == float(exact)
     assert np.isnan(found[1])  # friction to spare
-
-
-RAN_ON = """
---m1 0.0275 --m2 3e-53 --M 1e-3|--m1 1e-49 --m2 3 --M 10|--m1 1 --m2 1 --wrap 60 --digits 6
---m1 1 --m2 2 --M inf --wrap 60 --points 2 --digits 5|--m1 1 --m2 1e499 --M inf --g 2.5 --points 40 --digits 1
---m1 1 --m2 2 --mu 0.1 --M inf --wrap 120 --g 1.25 --points 2 --digits 1
-"""
-
-
-@pytest.mark.parametrize("words", RAN_ON.strip().replace("|", "\n").splitlines())
-def test_what_ran_for_a_minute_ends(words: str, atwood: Atwood) -> None:
-    ran = atwood("contact", *words.split())
-    assert (ran.status, ran.err) == (0, "")
