@@ -44,7 +44,7 @@ contact --m1 1.00000000000000000000001 --m2 1 --M 0.3 --mu 0.3
 contact --m1 1.{"123456789" * 60} --m2 2.{"123456789" * 60} --M 3.{"1" * 500} --mu 0.{"3" * 500}
 solve --m1 1 --m2 3 --M 10 --drop 1 --time 1.2|solve --m1 3 --m2 1 --M 10 --mu 0.3|solve --m1 1 --m2 3 --M 10 --mu 50
 solve --m1 0 --m2 3|solve --m1 0 --m2 3 --M 6|solve --m1 1 --m2 3 --M inf --mu 0.3 --axle 2
-solve --m1 1 --m2 3 --mu 0.01 --wrap 250 --axle 5|solve --m1 1 --m2 3 --g 1.2345 --M 10 --digits 3
+solve --m1 1 --m2 3 --g 1.2345 --M 10 --digits 3
 sweep --m1 1 --m2 3 --axle 0:3:4 --M 10|sweep --m1 1 --m2 3 --mu 0.3 --M 10,inf
 sweep --only T1,T2,mu_verge --m1 1000 --m2 400:1000:3 --mu 0.1,0.2 --M 100
 sweep --only friction_force,mu_verge,a --m1 1 --m2 3 --M 1:1000:6:log --mu 0.3 --inertia disk,1/3
