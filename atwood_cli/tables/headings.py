@@ -34,6 +34,8 @@ MOST_ABOVE = 40
 """The most rows of titles above the headings."""
 ABOVE = "lines above the headings left out"
 SIGN = r"(?:±|\+/?-)"
+STATED = re.compile(rf"[(\[]{SIGN}\s*(NUMBER)[)\]]|{SIGN}\s*(NUMBER)".replace("NUMBER", r"[\d.,]*\d(?: ?%)?"))
+"""An uncertainty in a heading, perhaps alone in its brackets."""
 BRACKET = r"[(\[]([^()\[\]]*)[)\]]"
 DIVIDED = (rf"(.+?)[ /]*{BRACKET}", r"([^/]+?) ?(?:/| in ) ?(.+)")
 """The patterns of a name with its unit: m1 (g), m1 [g], a/(m/s²); m1/g, m1 in g."""
@@ -172,10 +174,11 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
 
 def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Heading | None:
     """Return what a column holds, without its place and factor; None if the heading is not known."""
-    for word, unit, is_loose in divisions(without_blanks(named.get(column, column))):
+    bare, stated = _without_uncertainty(column)
+    for word, unit, is_loose in divisions(without_blanks(named.get(column, bare))):
         meaning = _named(word, vocabulary)
         if meaning and not (is_loose and not is_unit(unit, meaning)):
-            if column in named and (own := unit_within(column, meaning)) != unit:
+            if column in named and (own := unit_within(bare, meaning)) != unit:
                 if unit and is_unit(own, meaning):
                     why = f"has the unit {in_quotes(own)}, not {in_quotes(unit)}"
                     raise refused(column, f"{why}; give --column without a unit")
@@ -184,12 +187,18 @@ def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> H
             is_symbol = unit == meaning.name[:1] or vocabulary.names.get(unit) == meaning.name
             if unit in NO_UNIT or (is_symbol and not is_unit(unit, meaning)):
                 unit = ""
-            is_short = column in named and len(column) <= LONGEST_HEADING
-            stated = re.search(rf"{SIGN}\s*([\d.,]*\d ?%?)", column) if is_short else None
             if stated and not vocabulary.uncertain:
                 raise refused(column, "states an uncertainty, which only solve and fit take")
-            return meaning._replace(column=column, unit=unit, stated=stated[1] if stated else "")
+            return meaning._replace(column=column, unit=unit, stated=stated)
     return None
+
+
+def _without_uncertainty(column: str) -> tuple[str, str]:
+    """Return a heading without the uncertainty that it states, and that: m1 (g) and 1 of m1 (±1 g)."""
+    match = STATED.search(column[:LONGEST_HEADING])
+    if not match:
+        return column, ""
+    return f"{column[: match.start()]} {column[match.end() :]}", match[1] or match[2]
 
 
 def divisions(text: str) -> Iterator[tuple[str, str, bool]]:
@@ -322,15 +331,15 @@ def read_as(
     own; if this is not known (None), or no column has another heading, those headed by their own name are
     left out.
     """
-    columns = {own.place: (own.column, own.name, own.unit) for own in headings}
-    columns |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit) for own in headings if own.u}
+    columns = {own.place: (own.column, own.name, own.unit, own.stated) for own in headings}
+    columns |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit, "") for own in headings if own.u}
     alike = dict[tuple[bool, str], list[str]]()
-    has_all = with_units is not None and any(column != name for column, name, _ in columns.values())
-    for place, (column, name, unit) in sorted(columns.items()):
+    has_all = with_units is not None and any(column != name for column, name, *_ in columns.values())
+    for place, (column, name, unit, stated) in sorted(columns.items()):
         is_open = not unit and "(" not in name and place not in (with_units or ())
         usual = parameter_of(name).unit if is_open else ""
         if column != name or (usual and has_all):
-            words = f" as {name}" if column != name else ""
+            words = f" as {name}{f' ± {stated}' if stated else ''}" if column != name else ""
             words += f" in {unit or usual}" if unit or usual else ""
             alike.setdefault((bool(usual), words), []).append(in_quotes(column))
     given, assumed = (
