@@ -188,7 +188,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         fit = _with_results(runs, used, data, given, names)
     except CannotSeparate as error:
         message = mistakes[0][1] if mistakes else "".join(error.args)
-        raise CannotSeparate(f"{message}{behind_an_error(remarks)}") from None
+        raise CannotSeparate(f"{message}{behind_an_error([*remarks, *runs.doubts])}") from None
     fit = fit._replace(shown=shown, outliers=[*_outliers(fit)] or mistakes)
     causes = _held(fit) or _causes(fit)
     low, high = fit.results["gravity"].interval if "gravity" in names else EARTH

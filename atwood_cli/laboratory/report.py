@@ -99,6 +99,7 @@ def results_of(fit: Fitted, in_python: bool = False) -> Fit:
     messages = [message for _, message in fit.outliers], fit.causes
     outliers, causes = ([f"{_capital(sentence(words, in_python))}." for words in some] for some in messages)
     known = bool(fit.data.scatter.any())
+    doubts, remarks = (map(_capital, some) for some in (fit.runs.doubts, fit.runs.remarks))
     return Fit(
         **{name: fit.results[name].value if name in fit.results else None for name in QUANTITIES},
         uncertainty={name: result.uncertainty for name, result in fit.results.items()},
@@ -109,7 +110,7 @@ def results_of(fit: Fitted, in_python: bool = False) -> Fit:
         interval_dof=fit.line.t_dof if fit.line.t_dof < NORMAL_DOF else None,
         between_runs=sqrt(fit.line.between) / abs(fit.values["gravity"]) if known and fit.line.dof else None,
         runs=_records(fit),
-        notes=[verdict(fit), *outliers, *map(_capital, fit.runs.remarks), _scatter(fit), *causes],
+        notes=[verdict(fit), *doubts, *outliers, *remarks, _scatter(fit), *causes],
     )
 
 
@@ -126,13 +127,18 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
         sentences = [equation(x, *results[x][:2]) for x in only if x in results]
         sentences += [f"{RESULTS[x]}: {NOT_FITTED}." for x in only if record[x] is None]
         first_cause = len(public.notes) - len(fit.causes)
-        sentences += [*public.notes[1 : 1 + len(fit.outliers)], *public.notes[first_cause:]]
+        sentences += [*public.notes[1 : _warnings(fit)], *public.notes[first_cause:]]
     else:
         names = "quantity", "value", "uncertainty", "low", "high", "unit"
         each = ((x, *result[:2], *result.interval, QUANTITIES[x].unit) for x, result in results.items())
         rows = [dict(zip(names, result, strict=True)) for result in each]
     bare = [cell(record[name]) for name in only]
     return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, public), lambda: sentences, bare)
+
+
+def _warnings(fit: Fitted) -> int:
+    """Return the number of notes that stand first: the verdict, what may be read wrongly, and outliers."""
+    return 1 + len(fit.runs.doubts) + len(fit.outliers)
 
 
 def _correlation(covariance: Any) -> float | None:
@@ -163,7 +169,7 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
 
 def _print_page(fit: Fitted, public: Fit) -> None:
     """Print the conditions, the runs, what there is to say, and the results."""
-    page, kind, results, first = Page(), fit.runs.kind, fit.results, 1 + len(fit.outliers)
+    page, kind, results, first = Page(), fit.runs.kind, fit.results, _warnings(fit)
     page.say(conditions(fit))
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"

@@ -57,7 +57,7 @@ class Runs(NamedTuple):
     uncertainties; ``rows`` are the numbers of their rows, ``mean`` is that of the values. Columns of
     measurements: ``values`` as typed (m/s² or s), ``u_values`` (0 if no uncertainty is stated), the ``run``
     of each, and ``cells``, where they stand: 8:t2. ``step`` is that of the last digit of any value. ``same``
-    are conditions that the table has, the same in all rows.
+    are conditions that the table has, the same in all rows. ``doubts`` say what may have been read wrongly.
     """
 
     kind: Kind
@@ -72,6 +72,7 @@ class Runs(NamedTuple):
     cells: Sequence[str]
     step: float
     remarks: Sequence[str] = ()
+    doubts: Sequence[str] = ()
     same: Mapping[str, Input] = {}
 
     @property
@@ -176,19 +177,19 @@ def read_runs(
     if left_out:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
     result = _as_columns(kind, runs, numbers, left_out)
-    columns = {**result.given, kind: result.values}
+    columns, doubts = {**result.given, kind: result.values}, list[str]()
     for x, (least, what, unit) in LARGE.items():
-        if x in bare and max(columns.get(x, [0])) >= least and not any(what in remark for remark in remarks):
+        if x in bare and max(columns.get(x, [0])) >= least and not any(what in doubt for doubt in doubts):
             example = f"{given[x].given}{unit}" if x in given else f"{x} ({unit})"
-            remarks.append(f"{what}; if they are in {unit}, say so, as in {example}.")
+            doubts.append(f"{what}; if they are in {unit}, say so, as in {example}.")
     heights = {dict(run).get("drop") for run in runs}
     if "drop" not in given and len(heights) == 1 and (height := heights.pop()):
         same["drop"] = Input(*height, None)  # if it is wrong, it is so in all runs alike
         result.u["drop"][:] = 0
     m1, m2 = (result.given[mass] for mass in MASSES)
     if min(m1) == max(m1) > CART * max(m2):
-        remarks.append(f"m1 is {m1[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1.")
-    return result._replace(remarks=remarks, same=same)
+        doubts.append(f"m1 is {m1[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1.")
+    return result._replace(remarks=remarks, doubts=doubts, same=same)
 
 
 def _in_own_terms(name: str, read: Input, by: Mapping[str, Any]) -> Input:
