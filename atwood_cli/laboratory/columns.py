@@ -47,8 +47,8 @@ MEAN = r"\b(?:avg|average|mean|mittel(?:wert)?|moyenne|promedio|m[eé]dia)\b"
 LIKE_MEAN = re.compile(MEAN, re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
 LIKE_MASS = re.compile(
-    r"(?:\b|_)(?:m\d*|mass\w*|masas?|масс\w*|gewicht\w*|weights?|hangers?|(?:over|pay)?load|rider|beban|peso|poids"
-    r"|\w*груз\w*)(?:\b|_)",
+    r"(?:\b|_)(?:(?<!\d )m\d*|mass\w*|masas?|масс\w*|gewicht\w*|weights?|hangers?|(?:over|pay)?load|rider"
+    r"|beban|peso|poids|\w*груз\w*)(?:\b|_)",
     re.IGNORECASE,
 )
 
@@ -146,7 +146,7 @@ def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, st
         is_mass = name in MASSES and LIKE_MASS.search(column[:LONGEST_HEADING])
         ranks[column, cell] = (is_named or int(fits or bool(is_mass))) if fits or not unit else 0
     best = [x for x, rank in ranks.items() if rank == max(ranks.values()) > 0]
-    alike = [re.sub(r"\d+|\b[A-Za-z]\b", "", column) for column, _ in best]
+    alike = [re.sub(r"\d+(?:st|nd|rd|th)?|\b[A-Za-z]\b", "", column) for column, _ in best]
     return [x for x, words in zip(best, alike, strict=True) if words == alike[0]]
 
 
@@ -164,7 +164,8 @@ def check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, st
             raise refused(column, "has numbers and no heading, behind a measurement; give it one")
         if column in uncertain:
             others = f", as could {listed(uncertain[1:])}" if uncertain[1:] else ""
-            raise refused(column, f"could be an uncertainty{others}; name what of, as in 'u(t)'")
+            difference = " or a difference" if LIKE_SUM.search(column[:LONGEST_HEADING]) else ""
+            raise refused(column, f"could be an uncertainty{difference}{others}; name what of, as in 'u(t)'")
         may_be_mass = (not unit or is_unit(unit, mass)) and LIKE_MASS.search(column[:LONGEST_HEADING])
         if is_mass or may_be_mass:
             if LIKE_SUM.search(column[:LONGEST_HEADING]):
