@@ -30,7 +30,7 @@ from .tools.scenes import inputs
 KEPT = re.findall(r"^\$ (?:printf '(.*)' \| )?atwood (.*) --figure \S+([^|\n]*)", PICTURES, re.MULTILINE)
 FIGURE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 MORE = f"""
-{"|".join(f"contact {FIGURE} --wrap {wrap}" for wrap in (1, 76, 225, 300, 345, 360, 2000))}
+{"|".join(f"contact {FIGURE} --wrap {wrap}" for wrap in (1, 76, 225, 300, 345, 2000))}
 contact --m1 3 --m2 1 --M 10 --mu 0.3 --wrap 120 --bare
 contact --m1 3 --m2 1 --M 10 --mu 0.3 --axle 3 --wrap 300
 contact --m1 2 --m2 2 --M 3 --mu 0.1 --wrap 300
