@@ -116,12 +116,6 @@ def test_cells_are_read_exactly(cell: str, comma: bool, value: str, uncertainty:
     assert headings.read_cell(GRAMS, [cell], comma) == want
 
 
-def test_commas_that_are_decimal() -> None:
-    cells = "1,5;|1,5\t|0,500\t|1,500;|1,500\t|1,5,|1.5;".split("|")  # each with its separator behind
-    found = [headings.decimal_commas_in([["x,y", cell[:-1]]], [1], cell[-1]) for cell in cells]
-    assert found == [True, True, True, True, False, False, False]
-
-
 # Runs
 
 DROP = read_input("drop", "98cm")
