@@ -490,7 +490,10 @@ def test_quantities_by_their_symbols_have_their_names(words: Any) -> None:
     ("arguments", "message"),
     [
         ({"accuracy": "best"}, "accuracy 'best' is not an accuracy; there are certified, exact"),
-        ({"quantities": ["tension"]}, "quantities 'tension' is not a quantity; did you mean tension_2?"),
+        (
+            {"quantities": ["tension"]},
+            "quantities 'tension' is not a quantity; did you mean tension_1 or tension_2 or tension_ratio?",
+        ),
         ({"quantities": "a,t1"}, "quantities 't1' is not a quantity; did you mean tension_1?"),
         ({"quantities": [["torque"]]}, r"quantities .*torque.* is not a quantity.*"),
         ({"m1": None}, "m1 is missing; give both masses, m1 and m2"),
