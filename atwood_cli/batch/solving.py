@@ -23,6 +23,7 @@ from ..tables.headings import (
     EMPTY,
     LONGEST_HEADING,
     MASS_NAMES,
+    ONE,
     Heading,
     Vocabulary,
     divisions,
@@ -222,8 +223,7 @@ def solve_cells(
     rows = pl.int_range(cells.height, eager=True)
     if unread or alone:
         rows = rows.filter(~rows.is_in([*unread, *alone]))
-        doubles = doubles[rows]
-    given: Any = doubles.to_dict() | shared
+    given: Any = doubles[rows].to_dict() | shared
     if "m1" in shared:  # perhaps all inputs are single numbers
         given["m1"] = pl.repeat(shared["m1"], len(rows), dtype=pl.Float64, eager=True)
     wraps = pl.select(pl.lit(given.get("wrap")).is_between(*LIKE_RADIANS, closed="none")).to_series()
@@ -240,8 +240,8 @@ def solve_cells(
     values = values.with_columns(pl.lit(None, pl.String).alias(ERROR))
     alone |= {*values.filter(pl.col("status") != VALID)["row"]}
     values = values.filter(pl.col("status") == VALID).drop("status")
-    answers_of = partial(_answers, columns, {x: read_exactly(x, wanted.given.get(x)) for x in INPUTS})
-    solve_row = cache(partial(_solve_row, answers_of, wanted.names))  # as many rows may be alike
+    as_typed = partial(_answers, columns, {x: read_exactly(x, wanted.given.get(x)) for x in INPUTS})
+    solve_row = cache(partial(_solve_row, as_typed, wanted.names))  # as many rows may be alike
     records = list[Mapping[str, Any]]()
     for row in sorted({*unread, *alone}):
         record, lacking = ({ERROR: unread[row]}, ()) if row in unread else solve_row(cells.row(row))
@@ -256,10 +256,13 @@ def solve_cells(
         to_digits = f"{{:.{wanted.digits - 1}e}}".format
         values = values.with_columns(numbers.map_elements(lambda x: float(to_digits(x)), pl.Float64))
     if wanted.conditions:
-        failures = cache(lambda given_cells: failures_of(answers_of(given_cells), wanted.conditions))
+        in_si = ReadColumns([heading._replace(unit="", factor=ONE) for heading in columns.headings])
+        as_doubles = partial(_answers, in_si, {x: read_exactly(x, shared.get(x)) for x in INPUTS})
+        failures = cache(lambda answers_of, inputs: failures_of(answers_of(inputs), wanted.conditions))
         for row, error in enumerate(values[ERROR]):
-            if error is None:
-                tally.failures.add(failures(cells.row(row)), f"in row {tally.rows + row + 1}")
+            if error is None:  # what is printed is judged
+                answers_of, inputs = (as_typed, cells) if row in alone else (as_doubles, doubles)
+                tally.failures.add(failures(answers_of, inputs.row(row)), f"in row {tally.rows + row + 1}")
     tally.assumed += reasons.pop(("regime", REGIME_ASSUMED), 0)
     tally.reasons.update(reasons)
     results = values.select(*wanted.names, ERROR)
