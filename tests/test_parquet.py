@@ -130,7 +130,7 @@ def test_a_frame_of_pandas_keeps_its_index_and_its_columns() -> None:
         (TABLE.with_columns(m2=True), "cannot read the table: column m2 holds Boolean, not numbers"),
         (TABLE.drop("m2"), "cannot read the table: column m2 is missing; there are 'id', 'm1 (g)', 'M', 'x'"),
         (TABLE.rename({"M": "M (u)"}), f"cannot read the table: column 'M (u)' has the unit 'u'; it takes {', '.join([*UNITS['mass'], *UNITS['force']])}; rename it"),
-        (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' may mean R; rename it"),
+        (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' may mean R (radius of the pulley); rename it"),
         (TABLE.rename({"id": "error"}), "cannot read the table: column 'error' has the name of a result; rename it"),
     ],
 )  # fmt: skip

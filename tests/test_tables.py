@@ -80,9 +80,9 @@ def test_a_column_that_is_refused_may_pass_as_a_label(columns: str) -> None:
 
 DOUBTFUL = """
 M: Mass|pulley_mass|Pulley mass (g)|pulley mass, g|m|m_kg|mass of the sheave; g: gravity|G|local gravity
-mu: μ|µ|friction|MU|coeff. of friction|f|f (-); mu_k: sliding friction; wrap: φ|contact angle (deg)|turns
+mu: μ|µ|friction|MU|coeff. of friction|f|f (-)|Reibungszahl; mu_k: sliding friction|Gleitreibung; wrap: φ|contact angle (deg)|turns|Umschlingung
 wrap: angle of wrap|wraps|alpha (deg)|θ; axle: Axle (N)|Axle_mN|friction in the bearing (N)
-inertia: beta|Inertia; I: moment of inertia|rotational inertia; R: radius|radius_cm|r cm|sheave radius
+inertia: beta|Inertia; I: moment of inertia|Trägheitsmoment; R: radius|radius_cm|r cm|sheave radius
 """
 
 
@@ -90,7 +90,7 @@ inertia: beta|Inertia; I: moment of inertia|rotational inertia; R: radius|radius
 def test_a_heading_that_may_mean_an_input_is_refused(words: str) -> None:
     name, headings = words.split(": ")
     for heading in headings.split("|"):
-        with pytest.raises(Unreadable, match=re.escape(f"column '{heading}' may mean {name};")):
+        with pytest.raises(Unreadable, match=re.escape(f"column '{heading}' may mean {name} (")):
             read_columns([*({"m1", "m2"} - {name}), heading], Wanted(NAMES))
 
 

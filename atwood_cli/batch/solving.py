@@ -14,26 +14,29 @@ from ..explain.messages import LIKE_RADIANS, reasons_in
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly, read_value
-from ..reading.units import UNITS, symbol_of
+from ..reading.units import symbol_of
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NAMES, REGIMES, STANDARD
-from ..solver.scene import INPUTS, MASSES, MEASURED, Angle, Input, InTerms, Scene, SceneError
+from ..solver.scene import INPUTS, MASSES, Angle, Input, InTerms, Scene, SceneError
 from ..tables.headings import (
     EMPTY,
+    LIKE_SUM,
     LONGEST_HEADING,
     MASS_NAMES,
+    NO_MASS,
     ONE,
     Heading,
     Vocabulary,
     divisions,
     has_unit,
+    is_mass,
     is_unit,
     listed,
+    naming,
     read_cell,
     read_headings,
     refused,
-    unit_within,
 )
 from ..tables.sources import Unreadable
 
@@ -45,14 +48,14 @@ VOCABULARY = Vocabulary(MASS_NAMES | {name.replace("_", ""): name for name in IN
 
 GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta", "α": "alpha", "θ": "theta"})
 LIKE_INPUTS = {
-    "axle": "(axle|bearing).*frict|frict.*(axle|bearing)",
-    "mu_k": "(kinetic|sliding|dynamic) (frict|coeff)",
-    "mu": r"frict|coeff|(?-i:^f\b)",
-    "wrap": r"wrap|contact|\bangle|\bturns?\b|^alpha\b|^theta\b",
-    "diameter": r"diameter|\bdia\b|(?-i:^D\b)",
+    "axle": "(axle|bearing|achs|lager).*(frict|reib)|(frict|reib).*(axle|bearing|achse|lager)",
+    "mu_k": "(kinetic|sliding|dynamic) (frict|coeff)|gleitreib",
+    "mu": r"frict|reib|coeff|koeff|(?-i:^f\b)",
+    "wrap": r"wrap|contact|umschling|winkel|\bangle|\bturns?\b|^alpha\b|^theta\b",
+    "diameter": r"diameter|durchmesser|\bdia\b|(?-i:^D\b)",
     "R": "radius",
-    "M": "(pulley|sheave).*(mass|weight)|(mass|weight).*(pulley|sheave)",
-    "I": "inertia",
+    "M": r"(pulley|sheave|\brolle).*(mass|weight)|(mass|weight).*(pulley|sheave|\brolle)",
+    "I": "inertia|trägheit",
     "g": "gravity",
 }
 """The inputs that headings may mean by a word or a first letter, as patterns; the first that fits counts."""
@@ -101,37 +104,33 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
     if double := [name for name in wanted.given if name in inputs]:
         raise SceneError(double[0], wanted.given[double[0]], "is a column of the table, too; leave one out")
     inputs |= {name for name, text in wanted.given.items() if read_value(name, text) is not None}
-    if not headings and inputs >= {*MASSES}:
-        raise Unreadable(f"no column holds an input; there are {listed(columns)}")
-    passed = {*labels, *(heading.column for heading in headings)}
-    doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
-    for column, name in doubtful.items():
-        if name == "diameter" and "R" not in inputs:
-            raise refused(column, "may be a diameter, twice R; give R")
-        if name in INPUTS and not (whole and name in inputs):  # in NDJSON, another row may lack the input
-            has_unit = not INPUTS[name].unit or unit_within(column, Heading(0, column, name))
-            typed = f"{name}{'' if has_unit else ' (UNIT)'}={column}"
-            way = f", or give --column {in_quotes(typed)}"
-            raise refused(column, f"may mean {name}; rename it", way)
     missing = [mass for mass in MASSES if mass not in inputs]
     if missing and whole:
         lacking = "columns m1 and m2 are" if missing[1:] else f"column {missing[0]} is"
         way = " ".join(f"--column {mass}=HEADING" for mass in missing)
         way += f", or --{missing[0]} for all rows"
         raise Unreadable(f"{lacking} missing; there are {listed(columns)}", f"; give {way}")
-    if measured := [column for column, name in doubtful.items() if name in MEASURED]:
-        raise refused(measured[0], "has measurements, which solve and fit take, not batch")
-    not_read = [column for column in columns if column not in passed]
-    mass = Heading(0, "", "M")
-    units = {column: unit_within(column, mass) for column in not_read}
-    bodies = [x for x, unit in units.items() if symbol_of(unit) in UNITS["mass"] and unit != "t"]  # a time
-    if bodies and whole and "M" not in inputs:
-        way = f", or give --column {in_quotes(f'M={bodies[0]}')} if they are the pulley's"
-        raise refused(bodies[0], "has masses, which are not read; rename it", way)
+    if not (headings or missing):
+        raise Unreadable(f"no column holds an input; there are {listed(columns)}")
+    read = {*labels, *(heading.column for heading in headings)}
+    not_read = [column for column in columns if column not in read]
+    for column in not_read:
+        _check_unread(column, inputs if whole else ())  # in NDJSON, another row may lack an input
     return ReadColumns([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
 
 
-def _meant(column: str) -> str | None:
+def _check_unread(column: str, inputs: Collection[str]) -> None:
+    """Raise Unreadable for a heading that may mean an input, unless the table has that."""
+    name = _meant(column)
+    if name == "diameter" and "R" not in inputs:
+        raise refused(column, "may be a diameter, twice R; give R")
+    if name in INPUTS and name not in inputs:
+        if name == "M" and LIKE_SUM.search(column[:LONGEST_HEADING]):
+            raise refused(column, NO_MASS)
+        raise refused(column, f"may mean {name} ({INPUTS[name].meaning}); rename it", naming(name, column))
+
+
+def _meant(column: str) -> str:
     """Return what a heading may mean: in other letters, by another name, with a unit, or by a word in it."""
     for word, unit, is_loose in divisions(without_blanks(column)):
         letters = normalize("NFKC", word).casefold().translate(GREEK_SPELLED)
@@ -139,8 +138,9 @@ def _meant(column: str) -> str | None:
         if meant and not (is_loose and not is_unit(unit, Heading(0, column, meant))):
             return meant
     letters = normalize("NFKC", column[:LONGEST_HEADING]).translate(GREEK_SPELLED)
-    words = " ".join(re.findall("[A-Za-z]+", letters))
-    return next((name for name, pattern in LIKE_INPUTS.items() if re.search(pattern, words, re.I)), None)
+    words = " ".join(re.findall(r"[^\W\d_]+", letters))
+    meanings = (name for name, pattern in LIKE_INPUTS.items() if re.search(pattern, words, re.I))
+    return next(meanings, "M" if is_mass(column) else "")
 
 
 # Rows

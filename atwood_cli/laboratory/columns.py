@@ -6,14 +6,16 @@ from shlex import quote
 from typing import Literal
 
 from ..numbers.text import in_quotes
-from ..reading.units import UNITS, symbol_of
 from ..solver.scene import INPUTS, MASSES, Input, SceneError
 from ..tables.headings import (
+    LIKE_SUM,
     LONGEST_HEADING,
     MASS_NAMES,
+    NO_MASS,
     OF_COLUMN_BEFORE,
     Heading,
     Vocabulary,
+    is_mass,
     is_unit,
     listed,
     name_at_start,
@@ -40,8 +42,6 @@ LIKE_UNCERTAINTY = re.compile(
     r"|(?:\b|_)(?:st(?:d|andard)\.?[ _-]?(?:dev|abw)|tolerance|unsicherheit)",
     re.IGNORECASE,
 )
-LIKE_SUM = re.compile(r"total|gesamt|\bsum|somme|diff|dif[ei]r|^\W*[Σ∑Δ]|\bm[\w ]*[-–−+] ?m", re.IGNORECASE)
-"""The headings of sums and of differences."""
 LIKE_THEORY = re.compile("theo|teór|calc|expect|predict", re.IGNORECASE)
 MEAN = r"\b(?:avg|average|mean|mittel(?:wert)?|moyenne|promedio|m[eé]dia)\b"
 LIKE_MEAN = re.compile(MEAN, re.IGNORECASE)
@@ -157,7 +157,6 @@ def check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, st
     uncertain = [column for column, _ in unread.values() if LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING])]
     for place, (column, _) in unread.items():
         unit = unit_within(column, mass)
-        is_mass = unit != "t" and symbol_of(unit) in UNITS["mass"]  # that is a time, rather than a tonne
         if column in INPUTS:
             raise refused(column, "has no effect on a fit")
         if not column.strip() and place - 1 in measured:
@@ -167,8 +166,8 @@ def check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, st
             difference = " or a difference" if LIKE_SUM.search(column[:LONGEST_HEADING]) else ""
             raise refused(column, f"could be an uncertainty{difference}{others}; name what of, as in 'u(t)'")
         may_be_mass = (not unit or is_unit(unit, mass)) and LIKE_MASS.search(column[:LONGEST_HEADING])
-        if is_mass or may_be_mass:
+        if is_mass(column) or may_be_mass:
             if LIKE_SUM.search(column[:LONGEST_HEADING]):
-                raise refused(column, "looks like a sum or a difference of masses, which is not read")
+                raise refused(column, NO_MASS)
             way = ", or give it as --hanger if it hangs on both sides"
             raise refused(column, "looks like a mass that is not read; add it to m1 or m2", way)

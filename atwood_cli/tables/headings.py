@@ -20,7 +20,7 @@ from unicodedata import normalize
 
 from ..numbers.text import in_quotes, without_blanks
 from ..reading.inputs import read_input
-from ..reading.units import PERCENT, Malformed, read_unit, symbol_of, terms_of
+from ..reading.units import PERCENT, UNITS, Malformed, read_unit, symbol_of, terms_of
 from ..solver.scene import Angle, Input, InTerms, SceneError, Terms, parameter_of
 from .sources import LONGEST_RECORD, Unreadable
 
@@ -44,6 +44,9 @@ LIKE_UNIT = re.compile(r"\w ?/ ?\w|\^|[²³]|s-[12]$")
 MASS_WORDS = "M m mass Mass masse Masse masa Masa massa Massa масса Масса".split()
 MASS_NAMES = {f"{word}{number}": f"m{number}" for word in MASS_WORDS for number in (1, 2)}
 """The masses by names that can mean nothing else, without blanks."""
+LIKE_SUM = re.compile(r"total|gesamt|\bsum|somme|diff|dif[ei]r|^\W*[Σ∑Δ]|\bm[\w ]*[-–−+] ?m", re.IGNORECASE)
+"""The headings of sums and of differences."""
+NO_MASS = "looks like a sum or a difference of masses, which is not read"
 UNCERTAINTY = re.compile(r"u ?\((.+)\)|(.+?)[ _]err")
 OF_COLUMN_BEFORE = ("±", "+/-")
 """The names of columns that hold the uncertainties of the column before."""
@@ -294,14 +297,32 @@ def unit_factor(heading: Heading) -> Fraction:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
         return read_unit(unit, dimension)
     except Malformed as error:
-        way = f", or give --column {quote(f'{name} (UNIT)={column}')}" if dimension else ""
-        raise refused(column, f"{error}; rename it", way) from None
+        raise refused(column, f"{error}; rename it", naming(name, column) if dimension else "") from None
+
+
+def naming(name: str, column: str) -> str:
+    """Return the words on an option that names a column, with a unit if its quantity has one."""
+    unit = parameter_of(name).unit
+    has_unit = not unit or is_unit(unit_within(column, Heading(0, column, name)), Heading(0, column, name))
+    typed = f"{name}={column}" if has_unit else f"{name} ({unit})={column}"
+    return f", or give --column {_as_typed(typed)}{'' if has_unit else ', with the unit of its cells'}"
+
+
+def is_mass(column: str) -> bool:
+    """Decide whether a heading has a unit of mass; t is a time, rather than a tonne."""
+    unit = unit_within(column, Heading(0, column, "m1"))
+    return unit != "t" and symbol_of(unit) in UNITS["mass"]
 
 
 def refused(column: str, why: str, way: str = "") -> Unreadable:
     """Return the error for a heading; a user of the command may go another ``way``, or label the column."""
-    label = quote(column) if column.isprintable() and len(column) <= LONGEST_HEADING else in_quotes(column)
-    return Unreadable(f"column {in_quotes(column)} {why}", f"{way}; --label {label} leaves it unread")
+    way += f"; --label {_as_typed(column)} leaves it unread"
+    return Unreadable(f"column {in_quotes(column)} {why}", way)
+
+
+def _as_typed(word: str) -> str:
+    """Return a word with a heading as a shell takes it, or with escapes."""
+    return quote(word) if word.isprintable() and len(word) <= LONGEST_HEADING else in_quotes(word)
 
 
 def units_in(row: Sequence[str]) -> list[str]:
