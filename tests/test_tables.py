@@ -362,10 +362,8 @@ def test_columns_are_as_a_file_of_them(read: Any, tmp_path: Path) -> None:
 
 def test_lines_are_counted_through_all_pieces(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sources, "BLOCK_BYTES", 8)
-    before, lines = "m1,m2\n" + "1,3\n" * 20, "\n" * 50
-    said = batch(f'{before}"p"q,3\n').err, batch(f'{before}1,"{lines}"\n').err
-    assert "the row that begins in line 22 has a quotation mark" in said[0]
-    assert "the cell that begins in line 22 has 51 lines, and the most is 50" in said[1]
+    said = batch("m1,m2\n" + "1,3\n" * 20 + '"p"q,3\n').err
+    assert "the row that begins in line 22 has a quotation mark" in said
 
 
 def test_a_header_may_come_in_two_pieces(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,6 +10,7 @@ from itertools import takewhile
 from threading import Event
 from typing import IO, TYPE_CHECKING
 
+from ..numbers.text import counted
 from ..output.page import progress
 from ..tables.sources import Unreadable
 from .frames import with_results
@@ -49,7 +50,7 @@ def solve_parquet(source: IO[bytes], target: IO[bytes], wanted: Wanted, tally: T
                 finally:
                     stopped.set()
     if tally.rows != total:
-        raise Unreadable(f"it is damaged: it should have {total} rows, and has {tally.rows}")
+        raise Unreadable(f"it is damaged: it should have {counted(total, 'row')}")
     return columns
 
 

@@ -3,7 +3,6 @@
 import csv
 import os
 import signal
-import stat
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, nullcontext
@@ -14,15 +13,14 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
 
 from ..numbers.digits import format_number, to_digits
-from ..numbers.text import without_blanks
+from ..numbers.text import counted, without_blanks
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
 from ..output.text import markdown_table
 from ..solver.quantities import QUANTITIES
-from ..solver.scene import SceneError
 from ..tables.headings import ABOVE, Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import BYTE_ORDER_MARK, Csv, Piece, read_ndjson
-from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream
+from ..tables.sources import Unreadable, blocks_of, cannot_read, is_packed, is_stream
 from ..tables.workbooks import opened_table
 from .frames import check_polars
 from .parquet import solve_parquet
@@ -52,7 +50,6 @@ def run_batch(job: Job, tally: Tally) -> list[str]:
     check_polars()
     # As polars is imported, it takes Ctrl-C: a pipe would be waited for, and an interrupt raised twice.
     signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
-    _check_apart(job)
     with ExitStack() as stack:
         try:
             source, how = opened_table(job.source, job.sheet, stack)
@@ -64,19 +61,9 @@ def run_batch(job: Job, tally: Tally) -> list[str]:
             remarks = solve(job, source, target, tally)
             target.flush()
         except Unreadable as error:
-            raise cannot_read(job.source, error) from None
+            after = f" (after {counted(tally.rows, 'row')})" if tally.rows else ""
+            raise cannot_read(job.source, Unreadable(f"{error}{after}", error.options)) from None
     return [*(f"read: {remark}." for remark in how), *remarks]
-
-
-def _check_apart(job: Job) -> None:
-    """Refuse an output that is the input, by whatever name. Raises SceneError."""
-    try:
-        read = os.stat(job.source) if job.source != STDIN else os.fstat(sys.stdin.fileno())
-        target = os.stat(job.target) if job.target != STDOUT else os.fstat(sys.stdout.fileno())
-    except (OSError, ValueError, AttributeError):  # a stream is closed, or a file not there yet
-        return
-    if stat.S_ISREG(target.st_mode) and os.path.samestat(read, target):
-        raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
 
 
 def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> AbstractContextManager[Iterator[Piece]]:
@@ -99,7 +86,9 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
         cells = piece.cells
         comma = decimal_commas_in(cells.iter_rows(), range(cells.width), table.separator)
         columns = columns._replace(comma=comma)
-    header = f"{table.separator.join([table.header, *wanted.names, ERROR])}{table.line_end}".encode()
+    units = _units(wanted) if job.markdown else {}
+    names = [f"{x} ({units[x]})" if x in units else x for x in wanted.names]
+    header = f"{table.separator.join([table.header, *names, ERROR])}{table.line_end}".encode()
     target.write(_markdown(header, table, True) if job.markdown else header)
     with _watched(chain(first, pieces), job, source) as watched:
         for piece in watched:
@@ -146,13 +135,7 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
 
     def headings(keys: Sequence[str]) -> Sequence[Heading]:
         nonlocal columns
-        try:
-            columns = read_columns(keys, wanted, whole=False)
-        except Unreadable as error:
-            if not (answered := tally.rows):
-                raise
-            where = f"row {answered + 1} or a later one; those before it are answered"
-            raise Unreadable(f"{error} ({where})", error.options) from None
+        columns = read_columns(keys, wanted, whole=False)
         return columns.headings
 
     with _watched(read_ndjson(blocks_of(source), headings), job, source) as watched:
@@ -161,7 +144,7 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
             target.flush()
     keys = [*(heading.column for heading in columns.headings if heading.place >= 0), *columns.not_read]
     known = {*map(without_blanks, keys)}  # any line may have what --column names
-    if known and (absent := [column for column in wanted.named if without_blanks(column) not in known]):
+    if absent := [column for column in wanted.named if without_blanks(column) not in known]:
         raise Unreadable(f"there is no column {listed(absent[:1])}; there are {listed(keys)}")
     return _remarks(columns, wanted)
 
@@ -194,7 +177,12 @@ def _remarks(columns: ReadColumns, wanted: Wanted, table: Csv | None = None) -> 
     headings = [heading for heading in columns.headings if heading.place >= 0]
     separator, above = (table.separator, [ABOVE][: table.above]) if table else ("", [])
     remarks = read_as(headings, separator, columns.comma, above)
-    if any(heading.factor != 1 or heading.terms for heading in headings):
-        units = {x: QUANTITIES[x].unit for x in wanted.names if x in QUANTITIES and QUANTITIES[x].unit}
-        remarks += [f"results: {', '.join(f'{x} in {unit}' for x, unit in units.items())}."] if units else []
+    units = _units(wanted)
+    if units and any(heading.factor != 1 or heading.terms for heading in headings):
+        remarks.append(f"results: {', '.join(f'{x} in {unit}' for x, unit in units.items())}.")
     return [*remarks, *([f"not read: {listed(columns.not_read)}."] if columns.not_read else [])]
+
+
+def _units(wanted: Wanted) -> dict[str, str]:
+    """Return the units of results, by their names."""
+    return {x: unit for x in wanted.names if x in QUANTITIES and (unit := QUANTITIES[x].unit)}

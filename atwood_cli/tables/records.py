@@ -18,8 +18,6 @@ from .sources import Unreadable, whole_lines
 if TYPE_CHECKING:
     import polars as pl
 
-MOST_LINES = 50
-"""The most lines of a cell: a note has fewer, and a quotation mark that is left open makes more."""
 UNREADABLE = "unreadable"
 """The member that has the text of a line of NDJSON that cannot be read."""
 BYTE_ORDER_MARK = "\ufeff"
@@ -147,8 +145,8 @@ class Csv:
                 rest, self._text = record, record + more
                 break
             bare, lacking = record.rstrip("\r\n"), width - len(cells)
-            if error := self._error_of(line, cells):
-                errors[len(texts)] = error
+            if lacking:
+                errors[len(texts)] = f"the row {wrong_width(len(cells), width, self.separator)}"
             if lacking < 0:  # the last cell takes the rest, so that results stand in their columns
                 bare = self._written([*cells[: width - 1], self.separator.join(cells[width - 1 :])])
             texts.append(bare + self.separator * lacking)
@@ -157,16 +155,6 @@ class Csv:
         self._line += text.count("\n") - rest.count("\n")
         frame = pl.DataFrame(rows, [(heading.name, pl.String) for heading in headings], orient="row")
         return Piece(pl.Series(texts, dtype=pl.String), frame, errors, len(text) - len(rest))
-
-    def _error_of(self, line: int, cells: Sequence[str]) -> str | None:
-        """Say what is wrong with the row that begins in that line; None if nothing is."""
-        for cell in cells:
-            if (ends := cell.count("\n")) >= MOST_LINES:
-                most = f"the most is {MOST_LINES}; is a quotation mark left open?"
-                return f"the cell that begins in line {line} has {ends + 1} lines, and {most}"
-            line += ends
-        width = len(self.columns)
-        return None if len(cells) == width else f"the row {wrong_width(len(cells), width, self.separator)}"
 
     def _written(self, cells: Sequence[str]) -> str:
         """Return cells as a row of the table, in quotation marks if they need them."""

@@ -34,7 +34,8 @@ FOREIGN = {
     rb"PK\x03\x04|\xd0\xcf\x11\xe0": "a workbook or an archive; give a workbook by its name, .xlsx or .ods",
     rb"\xff\xfe|\xfe\xff|.?\0": "in UTF-16 or UTF-32; save it as UTF-8",
     rb"PAR1": "Parquet; batch reads it with --from parquet, and fit reads CSV",
-    rb"\[[{\n]": "a JSON array; write an object a line, and give --from ndjson to batch",
+    rb"\[[{\n]": "a JSON array; write an object a line (jq -c '.[]'), and give --from ndjson to batch",
+    rb"\{\s*\n": "JSON in several lines; write an object a line (jq -c .), and give --from ndjson to batch",
 }
 """Files of other kinds: the patterns of their first bytes, their names, and the way to use them."""
 JSON_FOR_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
