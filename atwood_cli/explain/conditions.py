@@ -2,6 +2,7 @@
 
 import operator
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
@@ -81,21 +82,21 @@ def failures_of(answers: Answers, conditions: Iterable[Condition]) -> dict[str, 
 
 
 class Failures:
-    """The rows that are not as expected: how many, and the first that fails each condition."""
+    """The conditions that fail: the first row that fails each, and how many do."""
 
     def __init__(self) -> None:
-        self.rows = 0
         self.first: dict[str, str] = {}
+        self.rows = Counter[str]()
 
     def add(self, failures: Mapping[str, str], place: str) -> None:
         """Count a row by what fails in it, if anything does."""
-        self.rows += bool(failures)
         for typed, why in failures.items():
             self.first.setdefault(typed, f"{place}: {why}")
+        self.rows.update(failures.keys())
 
     def lines(self, total: int) -> list[str]:
         """Return what to say of all rows."""
-        return [*self.first.values(), f"{self.rows} of {counted(total, 'row')} failed"] if self.rows else []
+        return [f"{why}; {self.rows[x]} of {counted(total, 'row')} failed" for x, why in self.first.items()]
 
 
 def failure(answers: Answers, expected: Condition) -> str:
