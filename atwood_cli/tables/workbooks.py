@@ -23,16 +23,17 @@ MOST_BYTES = 64 << 20
 """The most bytes of a workbook, or a table of runs, unpacked: a laboratory has thousands of rows."""
 MOST_CELLS = 4 << 20
 """The most cells of a sheet, empty ones included: few bytes can stand for very many."""
+TOO_MANY = f"it has more than {MOST_CELLS >> 20} million cells"
 DAY = 86_400  # seconds
-DATES = {*range(14, 23), *range(27, 37), *range(45, 48), *range(50, 59)}
-"""The formats of dates and times that every .xlsx has, by their numbers."""
-PERCENTS = {9, 10}
+DAMAGE = (BadZipFile, LookupError, ParseError, ValueError, zlib.error, EOFError, OSError, RuntimeError)
+"""What is raised for a part that is lacking, damaged, or has a password."""
+FORMATS = {9: "%", 10: "%"} | dict.fromkeys((*range(14, 23), *range(27, 37), 45, 46, 47, *range(50, 59)), "h")
+"""The formats of percent, and of dates and times, that every .xlsx has, by their numbers."""
 
-Rows = dict[int, dict[int, str]]
-"""The texts of cells that are not empty, by row and column."""
-Merged = dict[tuple[int, int], int]
-"""The last rows of merged cells, by the place of the first."""
-Cells = tuple[Rows, Merged]
+Place = tuple[int, int]
+"""The row and the column of a cell."""
+Cells = tuple[dict[Place, str], dict[Place, int]]
+"""The texts of cells that are not empty, and of merged cells the last row, by the place of the first."""
 Sheets = dict[str, tuple[bool, Callable[[], Cells]]]
 """Whether a sheet is hidden, and what reads it, by its name."""
 
@@ -67,19 +68,21 @@ def workbook_as_csv(file: IO[bytes], name: str | None) -> tuple[bytes, list[str]
             shown = name or next((sheet for sheet in sheets if not hidden[sheet]), next(iter(sheets), ""))
             if shown not in sheets:
                 raise Unreadable(f"there is no sheet {in_quotes(shown)}; there are {names}")
-            rows, merged = sheets[shown][1]()
-    except (BadZipFile, LookupError, ParseError, ValueError, zlib.error, EOFError, OSError) as error:
+            cells, merged = sheets[shown][1]()
+    except DAMAGE as error:
         why = getattr(error, "strerror", None) or str(error)
         raise Unreadable(f"it is damaged, has a password, or is no workbook: {why}") from None
-    except (RuntimeError, NotImplementedError):
-        raise Unreadable("it has a password") from None
-    width = 1 + max((column for row in rows.values() for column in row), default=0)
-    if width * len(rows) > MOST_CELLS:
-        raise Unreadable(f"sheet {in_quotes(shown)} has more than {MOST_CELLS >> 20} million cells")
-    _fill(rows, merged)
+    rows = sorted({row for row, _ in cells})
+    columns = range(1 + max((column for _, column in cells), default=0))
+    if len(columns) * len(rows) > MOST_CELLS:
+        raise Unreadable(TOO_MANY)
+    for first in [first for first in merged if first in cells]:
+        for row in rows:
+            if first[0] < row <= merged[first]:
+                cells.setdefault((row, first[1]), cells[first])
     buffer = StringIO()
-    cells = ([rows[row].get(column, "") for column in range(width)] for row in sorted(rows))
-    csv.writer(buffer, lineterminator="\n").writerows(cells)
+    lines = ([cells.get((row, column), "") for column in columns] for row in rows)
+    csv.writer(buffer, lineterminator="\n").writerows(lines)
     return buffer.getvalue().encode(), [f"sheet {in_quotes(shown)} of {names}"][: len(sheets) - 1]
 
 
@@ -92,16 +95,6 @@ def _part(archive: ZipFile, name: str) -> Element:
     return fromstring(content)
 
 
-def _fill(rows: Rows, merged: Merged) -> None:
-    """Give cells that are merged over rows the text of the first."""
-    above: dict[int, tuple[int, str]] = {}
-    for number, row in sorted(rows.items()):
-        for column, (last, text) in above.items():
-            if number <= last:
-                row.setdefault(column, text)
-        above |= {x: (merged[number, x], row[x]) for x in row if merged.get((number, x), 0) > number}
-
-
 def _local(tag: str) -> str:
     return tag.rpartition("}")[2]
 
@@ -111,15 +104,19 @@ def _get(element: Element, name: str) -> str:
     return next((value for key, value in element.items() if _local(key) == name), "")
 
 
-def _number(value: str, kind: str, suffix: str = "") -> str:
-    """Return a number as it is shown in full: of 15 digits, in percent, or as a date or a time of day."""
+def _number(value: str, code: str = "") -> str:
+    """Return a number of 15 digits as its format shows it: in percent, with a unit, as a date or a time."""
     number = float(value)
-    if kind == "date" and not 0 <= number < 1:
-        return f"a date, day {number:.15g}"
-    if kind == "date":
+    signs = re.sub(r'"[^"]*"|\\.|\[[^hms\]][^\]]*\]|General|Standard', "", code)
+    if re.search("[dmyhs]", signs, re.IGNORECASE):
+        if not 0 <= number < 1:
+            return f"a date, day {number:.15g}"
         minutes, seconds = divmod(round(number * DAY, 6), 60)
         return f"{minutes // 60:.0f}:{minutes % 60:02.0f}:{seconds:09.6f}".rstrip("0").rstrip(".")
-    return f"{number * 100:.15g}%" if kind == "percent" else f"{number:.15g}{suffix}"
+    if "%" in signs:
+        return f"{number * 100:.15g}%"
+    unit = re.search(r'(?:"([^"]*)"|\\(.))$', code)
+    return f"{number:.15g}{(unit[1] or unit[2] or '') if unit else ''}"
 
 
 # .xlsx
@@ -137,11 +134,11 @@ def _xlsx(part: Callable[[str], Element]) -> Sheets:
 
 
 def _cells_of_xlsx(part: Callable[[str], Element], path: str) -> Cells:
-    kinds, texts = [("", "")], list[str]()
+    formats, texts = [""], list[str]()
     with suppress(KeyError):  # a workbook may have neither
-        kinds = _formats(part("xl/styles.xml"))
+        formats = _formats(part("xl/styles.xml"))
         texts = [_text_of_xlsx(text) for text in part("xl/sharedStrings.xml").iterfind(".//{*}si")]
-    sheet, rows = part(path), Rows()
+    sheet, cells = part(path), dict[Place, str]()
     for cell in sheet.iterfind(".//{*}c"):
         value, formula = cell.findtext("{*}v", ""), cell.findtext("{*}f")
         match _get(cell, "t"):
@@ -152,12 +149,11 @@ def _cells_of_xlsx(part: Callable[[str], Element], path: str) -> Cells:
             case "b":
                 value = "TRUE" if value == "1" else "FALSE"
             case "" | "n" if value:
-                value = _number(value, *kinds[int(_get(cell, "s") or 0)])
+                value = _number(value, formats[int(_get(cell, "s") or 0)])
         if value or formula is not None:
-            row, column = _place(_get(cell, "r"))
-            rows.setdefault(row, {})[column] = value or f"={formula}"
+            cells[_place(_get(cell, "r"))] = value or f"={formula}"
     corners = [_get(merged, "ref").split(":") for merged in sheet.iterfind(".//{*}mergeCell")]
-    return rows, {_place(first): _place(last)[0] for first, last in corners}
+    return cells, {_place(first): _place(last)[0] for first, last in corners}
 
 
 def _text_of_xlsx(text: Element) -> str:
@@ -174,20 +170,13 @@ def _place(reference: str) -> tuple[int, int]:
     return int(reference[len(letters) :]), column - 1
 
 
-def _formats(styles: Element) -> list[tuple[str, str]]:
-    """Return for each style of cells whether it shows dates or percent, and the words behind a number."""
-    codes = {int(_get(x, "numFmtId")): _get(x, "formatCode") for x in styles.iterfind(".//{*}numFmt")}
-    formats = []
-    for style in styles.iterfind(".//{*}cellXfs/*"):
-        number = int(_get(style, "numFmtId") or 0)
-        code = codes.get(number, "").split(";")[0]
-        bare = re.sub(r'"[^"]*"|\\.|\[[^hms\]][^\]]*\]|General|Standard', "", code)
-        is_date = number in DATES or re.search("[dmyhs]", bare, re.IGNORECASE)
-        is_percent = number in PERCENTS or "%" in bare
-        words = re.search(r'(?:"([^"]*)"|\\(.))$', code)
-        kind = "date" if is_date else "percent" if is_percent else ""
-        formats.append((kind, (words[1] or words[2] or "") if words else ""))
-    return formats
+def _formats(styles: Element) -> list[str]:
+    """Return the format of numbers in each style of cells."""
+    named = {
+        _get(x, "numFmtId"): _get(x, "formatCode").split(";")[0] for x in styles.iterfind(".//{*}numFmt")
+    }
+    numbers = (_get(style, "numFmtId") or "0" for style in styles.iterfind(".//{*}cellXfs/*"))
+    return [named.get(number) or FORMATS.get(int(number), "") for number in numbers]
 
 
 # .ods
@@ -205,23 +194,20 @@ def _ods(part: Callable[[str], Element]) -> Sheets:
 
 
 def _cells_of_ods(table: Element) -> Cells:
-    rows, merged, number, count = Rows(), Merged(), 0, 0
-    for row in table.iterfind(".//{*}table-row"):
-        column, cells = 0, dict[int, str]()
-        rows_alike = int(_get(row, "number-rows-repeated") or 1)
-        for cell in row:
-            text = "" if _local(cell.tag) == "covered-table-cell" else _text_of_ods(cell)
-            repeat = int(_get(cell, "number-columns-repeated") or 1)
-            merged[number, column] = number + int(_get(cell, "number-rows-spanned") or 1) - 1
-            if text:
-                count += repeat * rows_alike
-                if count > MOST_CELLS:
-                    raise Unreadable(f"it has more than {MOST_CELLS >> 20} million cells")
-                cells |= dict.fromkeys(range(column, column + repeat), text)
-            column += repeat
-        rows |= {number + i: {**cells} for i in range(rows_alike if cells else 0)}
-        number += rows_alike
-    return rows, merged
+    cells, merged, row = dict[Place, str](), dict[Place, int](), 0
+    for line in table.iterfind(".//{*}table-row"):
+        column, rows = 0, int(_get(line, "number-rows-repeated") or 1)
+        for cell in line:
+            columns = int(_get(cell, "number-columns-repeated") or 1)
+            if text := "" if _local(cell.tag) == "covered-table-cell" else _text_of_ods(cell):
+                if len(cells) + rows * columns > MOST_CELLS:
+                    raise Unreadable(TOO_MANY)
+                cells |= {(row + i, column + j): text for i in range(rows) for j in range(columns)}
+                if spanned := _get(cell, "number-rows-spanned"):
+                    merged[row, column] = row + int(spanned) - 1
+            column += columns
+        row += rows
+    return cells, merged
 
 
 def _text_of_ods(cell: Element) -> str:
@@ -230,9 +216,9 @@ def _text_of_ods(cell: Element) -> str:
     match next((value for key, value in cell.items() if key.endswith("office:1.0}value-type")), ""):
         case "float" | "currency":
             unit = re.search(r" ?[^\W\d_][^\d]*$", shown)
-            return _number(_get(cell, "value"), "", unit[0] if unit else "")
+            return _number(_get(cell, "value")) + (unit[0] if unit else "")
         case "percentage":
-            return _number(_get(cell, "value"), "percent")
+            return _number(_get(cell, "value"), "%")
         case "time":
             clock = re.fullmatch(r"PT(\d+)H(\d+)M([\d.,]+)S", _get(cell, "time-value"))
             return ":".join(clock.groups()) if clock else shown
