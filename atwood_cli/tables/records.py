@@ -7,9 +7,10 @@ import csv
 import json
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import partial
 from io import StringIO
-from itertools import islice
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import chain, islice
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..numbers.text import counted, in_quotes
 from .headings import Heading, find_header, units_in
@@ -41,13 +42,14 @@ class Piece(NamedTuple):
 # CSV
 
 
-def records_of(
-    text: str, separator: str, line: int = 1, may_go_on: bool = False
-) -> Iterator[tuple[int, str, list[str]]]:
+class GoesOn(Unreadable):
+    """A text of CSV ends within a row, or before the first. More of it may help."""
+
+
+def records_of(text: str, separator: str, line: int = 1) -> Iterator[tuple[int, str, list[str]]]:
     """Yield the rows of CSV that are not blank: the number of the first line, the text, and the cells.
 
-    ``line`` is the number of the text's first line. If the text ``may_go_on`` and ends within a row, this has
-    no cells. Raises Unreadable.
+    ``line`` is the number of the text's first line. Raises Unreadable, GoesOn.
     """
     taken: list[str] = []
 
@@ -66,15 +68,9 @@ def records_of(
             line += len(taken)
             taken.clear()
     except csv.Error as error:
-        if may_go_on and "end of data" in str(error):
-            yield line, "".join(taken), []
-        else:
-            raise cannot_split(line, STRAY_RETURN if "new-line" in str(error) else QUOTATION) from None
-
-
-def cannot_split(line: int, why: str = QUOTATION) -> Unreadable:
-    """Return the error for the row that begins in that line, and cannot be split into cells."""
-    return Unreadable(f"the row that begins in line {line} {why}")
+        why = STRAY_RETURN if "new-line" in str(error) else QUOTATION
+        kind = GoesOn if "end of data" in str(error) else Unreadable
+        raise kind(f"the row that begins in line {line} {why}") from None
 
 
 class Csv:
@@ -87,32 +83,42 @@ class Csv:
     def __init__(self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]]):
         """Read the header, by its ``known`` columns. The rows ``above`` it are left out."""
         self._texts = map(_decoded, whole_lines(blocks, is_csv=True))
-        text, header, self.columns = "", "", list[str]()
-        while not self.columns and (more := next(self._texts, "")):  # the header may have line ends
-            text += more
-            mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
-            bare = text.removeprefix(BYTE_ORDER_MARK)
-            _, self.separator, self.above = find_header(bare, known)
-            rows = (row for row in records_of(bare, self.separator, 1, True) if any(row[2]) or not row[2])
-            line, header, self.columns = next(islice(rows, self.above, None), (1, "", []))
-        if not self.columns:
-            raise cannot_split(line) if header else Unreadable("it is empty")
-        self._text = bare.split("\n", line - 1)[-1].removeprefix(header)
-        self._line = line + header.count("\n")
-        self.header = mark + header.rstrip("\r\n")
-        self.line_end = "\r\n" if header.endswith("\r\n") else "\n"
+        self._rest = self._whole("", partial(self._below_header, known))
 
     def pieces(self, headings: Sequence[Heading]) -> Iterator[Piece]:
         """Yield the records below the header. Raises Unreadable."""
         is_first = True
-        while text := self._text or next(self._texts, ""):
-            self._text = ""
-            piece = self._in_bulk(text, headings) or self._by_csv(text, headings)
+        for text in chain([self._rest], self._texts):
+            piece = self._in_bulk(text, headings) or self._whole(text, partial(self._by_csv, headings))
             if len(piece.texts):
                 if is_first and headings and units_in(piece.cells.row(0)):
                     raise Unreadable("row 1 has units; write them in the headings, as m1 (g)")
                 is_first = False
                 yield piece
+
+    def _whole(self, text: str, read: Callable[[str], Any]) -> Any:
+        """Read a text, with as much as follows that it ends with a row. Raises Unreadable."""
+        while True:
+            try:
+                return read(text)
+            except GoesOn:
+                if not (more := next(self._texts, "")):
+                    raise
+                text += more
+
+    def _below_header(self, known: Callable[[Sequence[str]], Collection[str]], text: str) -> str:
+        """Read the header, and return the text below it. Raises Unreadable, GoesOn."""
+        mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
+        text = text.removeprefix(BYTE_ORDER_MARK)
+        _, self.separator, self.above = find_header(text, known)
+        rows = (row for row in records_of(text, self.separator) if any(row[2]))
+        line, header, self.columns = next(islice(rows, self.above, None), (1, "", []))
+        if not header:
+            raise GoesOn("it is empty")
+        self._line = line + header.count("\n")
+        self.header = mark + header.rstrip("\r\n")
+        self.line_end = "\r\n" if header.endswith("\r\n") else "\n"
+        return text.split("\n", line - 1)[-1].removeprefix(header)
 
     def _in_bulk(self, text: str, headings: Sequence[Heading]) -> Piece | None:
         """Return the records of a text if all of them are plain, else None."""
@@ -129,21 +135,15 @@ class Csv:
         frame = pl.DataFrame({heading.name: cells.list.get(heading.place) for heading in headings})
         return Piece(lines, frame, {}, len(text))
 
-    def _by_csv(self, text: str, headings: Sequence[Heading]) -> Piece:
-        """Return the records of a text; one that is not complete is left for the next piece."""
+    def _by_csv(self, headings: Sequence[Heading], text: str) -> Piece:
+        """Return the records of a text. Raises Unreadable, GoesOn."""
         import polars as pl
 
         width = len(self.columns)
         texts: list[str] = []
         rows: list[list[str]] = []
         errors: dict[int, str] = {}
-        rest = ""
-        for line, record, cells in records_of(text, self.separator, self._line, True):
-            if not cells:
-                if not (more := next(self._texts, "")):
-                    raise cannot_split(line)
-                rest, self._text = record, record + more
-                break
+        for _, record, cells in records_of(text, self.separator, self._line):
             bare, lacking = record.rstrip("\r\n"), width - len(cells)
             if lacking:
                 errors[len(texts)] = f"the row {wrong_width(len(cells), width, self.separator)}"
@@ -152,9 +152,9 @@ class Csv:
             texts.append(bare + self.separator * lacking)
             cells += [""] * lacking
             rows.append([cells[heading.place] for heading in headings])
-        self._line += text.count("\n") - rest.count("\n")
+        self._line += text.count("\n")
         frame = pl.DataFrame(rows, [(heading.name, pl.String) for heading in headings], orient="row")
-        return Piece(pl.Series(texts, dtype=pl.String), frame, errors, len(text) - len(rest))
+        return Piece(pl.Series(texts, dtype=pl.String), frame, errors, len(text))
 
     def _written(self, cells: Sequence[str]) -> str:
         """Return cells as a row of the table, in quotation marks if they need them."""
