@@ -23,7 +23,7 @@ from atwood_cli.batch import solving
 from atwood_cli.reading.units import UNITS
 from atwood_cli.tables import sources
 
-from .tools.running import FROM, HANGS, TOP, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
+from .tools.running import FROM, HANGS, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
 
 TEXT = "m1,m2\n1,3\n"
 
@@ -223,15 +223,7 @@ def test_a_number_beyond_the_doubles_is_taken_as_solve_takes_it() -> None:
 # Usage and files
 
 
-def test_a_polars_that_is_too_old_or_missing_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
-    (oldest,) = re.findall("polars>=([0-9.]+)", (TOP / "pyproject.toml").read_text(encoding="utf-8"))
-    monkeypatch.setattr(pl, "__version__", oldest)
-    assert batch(TEXT, "--only a").status == 0
-    monkeypatch.setattr(pl, "__version__", "1.9.0")
-    why = f"this needs polars {oldest} or newer, not 1.9.0; pip install --upgrade polars"
-    assert batch(TEXT) == (1, "", f"atwood: {why}\n")
-    with pytest.raises(ImportError, match=re.escape(why)):
-        solve_table(pl.DataFrame({"m1": [1.0], "m2": [3.0]}))
+def test_polars_that_is_missing_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "polars", None)
     why = f"this needs polars; install it with: pip install '{FROM}[batch]'"
     assert batch(TEXT) == (1, "", f"atwood: {why}\n")

@@ -22,7 +22,6 @@ from ..tables.headings import ABOVE, Heading, decimal_commas_in, listed, read_as
 from ..tables.records import BYTE_ORDER_MARK, Csv, Piece, read_ndjson
 from ..tables.sources import Unreadable, blocks_of, cannot_read, is_packed, is_stream
 from ..tables.workbooks import opened_table
-from .frames import check_polars
 from .parquet import solve_parquet
 from .solving import ERROR, VOCABULARY, ReadColumns, Tally, Wanted, read_columns, solve_cells
 
@@ -47,7 +46,8 @@ class Job(NamedTuple):
 
 def run_batch(job: Job, tally: Tally) -> list[str]:
     """Solve a table of scenes. Returns sentences on how it was read. Raises OSError."""
-    check_polars()
+    import polars  # noqa: F401
+
     # As polars is imported, it takes Ctrl-C: a pipe would be waited for, and an interrupt raised twice.
     signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
     with ExitStack() as stack:
