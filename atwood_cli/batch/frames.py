@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 Table = TypeVar("Table")
 
+
 def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
     """Append its results to each row of a table of scenes, as `atwood batch` does.
 

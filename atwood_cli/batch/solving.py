@@ -4,8 +4,9 @@ import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cache, partial
-from math import inf
+from math import inf, log10
 from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
@@ -152,8 +153,8 @@ class Tally:
 
     asked: Collection[str] = ()
     """The results that the user names. Only of these it is said why they are missing, if there are any."""
-    missing: set[str] = field(init=False)
-    """Those that no row has had."""
+    had: set[str] = field(default_factory=set)
+    """Those of them that a row has had."""
     rows: int = 0
     regimes: Counter[str] = field(default_factory=Counter)
     assumed: int = 0  # of the regimes
@@ -167,12 +168,9 @@ class Tally:
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
     failures: Failures = field(default_factory=Failures)
 
-    def __post_init__(self) -> None:
-        self.missing = {*self.asked}
-
     def add(self, results: "pl.DataFrame", regimes: "pl.Series") -> None:
         """Count the next rows by their results."""
-        self.missing -= {name for name in self.missing if results[name].null_count() < results.height}
+        self.had |= {name for name in self.asked if results[name].count()}
         self.regimes.update({regime: count for regime, count in regimes.value_counts().iter_rows() if regime})
         if bad := results.height - results[ERROR].null_count():
             row = results[ERROR].is_not_null().arg_max() or 0
@@ -215,7 +213,9 @@ def solve_cells(
 
     from ..arrays import VALID, solve_and_count
 
-    cells = cells.with_columns(pl.selectors.decimal().cast(pl.String))
+    as_texts = pl.selectors.decimal() | pl.selectors.by_dtype(pl.Categorical, pl.Enum)
+    cells = cells.with_columns(as_texts.cast(pl.String))
+    exact = {x: read_exactly(x, wanted.given.get(x)) for x in INPUTS}
     shared = {name: _double(Heading(0, name, name), False, text) for name, text in wanted.given.items()}
     doubles, alone = _doubles(cells, columns)
     if None in shared.values():
@@ -223,24 +223,21 @@ def solve_cells(
     rows = pl.int_range(cells.height, eager=True)
     if unread or alone:
         rows = rows.filter(~rows.is_in([*unread, *alone]))
-    given: Any = doubles[rows].to_dict() | shared
-    if "m1" in shared:  # perhaps all inputs are single numbers
-        given["m1"] = pl.repeat(shared["m1"], len(rows), dtype=pl.Float64, eager=True)
+    # If an option is no double, no row is solved with it here.
+    given: Any = doubles[rows].to_dict() | {x: double or 0.0 for x, double in shared.items()}
     wraps = pl.select(pl.lit(given.get("wrap")).is_between(*LIKE_RADIANS, closed="none")).to_series()
     tally.like_radians |= {*wraps.unique(), *([None] if alone else [])}
-    masses = [heading for heading in columns.headings if heading.name in MASSES]
-    options = (read_value(x, text) for x, text in wanted.given.items() if x in MASSES)
-    if any(heading.terms for heading in masses) or any(isinstance(value, InTerms) for value in options):
-        bare = [x.name for x in masses if not x.unit and x.name in cells.columns]
-        tally.beside_weights |= {x for x in bare if cells[x].cast(pl.Float64, strict=False).count()}
     terms = {heading.name: heading.terms for heading in columns.headings if heading.terms}
+    if any(x in terms or isinstance(exact[x].value, InTerms) for x in MASSES):
+        bare = [x.name for x in columns.headings if x.name in MASSES and not x.unit]
+        tally.beside_weights |= {x for x in bare if cells[x].cast(pl.Float64, strict=False).count()}
     solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names], terms)
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
     values = pl.DataFrame({**solved, "regime": regimes, "row": rows})
     values = values.with_columns(pl.lit(None, pl.String).alias(ERROR))
     alone |= {*values.filter(pl.col("status") != VALID)["row"]}
     values = values.filter(pl.col("status") == VALID).drop("status")
-    as_typed = partial(_answers, columns, {x: read_exactly(x, wanted.given.get(x)) for x in INPUTS})
+    as_typed = partial(_answers, columns, exact)
     solve_row = cache(partial(_solve_row, as_typed, wanted.names))  # as many rows may be alike
     records = list[Mapping[str, Any]]()
     for row in sorted({*unread, *alone}):
@@ -280,8 +277,6 @@ def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame
     inputs: dict[str, pl.Series] = {}
     single = set[int]()
     for heading, column in zip(columns.headings, cells, strict=True):
-        if column.dtype in (pl.Categorical, pl.Enum):
-            column = column.cast(pl.String)
         if not (column.dtype.is_numeric() or column.dtype in (pl.String, pl.Null)):
             raise Unreadable(f"column {heading.name} holds {shortened(str(column.dtype))}, not numbers")
         if column.dtype == pl.String:
@@ -291,9 +286,8 @@ def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame
         rows = (column.is_not_null() & doubles.is_null()).arg_true()
         double_of = cache(partial(_double, heading._replace(place=0), columns.comma))
         others = [double_of(cell) for cell in column[rows]]
-        for row, cell, double in zip(rows, column[rows], others, strict=True):
-            if double is None or (double != inf and has_unit(cell)):
-                single.add(row)
+        read = zip(rows, column[rows], others, strict=True)
+        single |= {row for row, cell, x in read if x is None or (x != inf and has_unit(cell))}
         inputs[heading.name] = doubles.scatter(rows, pl.Series(others, dtype=pl.Float64))
     return pl.DataFrame(inputs), single
 
@@ -302,9 +296,8 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
     """Return the double nearest to each cell of a column, in SI units; null if only `_double` can tell."""
     import polars as pl
 
-    factor = heading.factor
-    power = len(str(max(factor, 1 / factor))) - 1
-    if max(factor, 1 / factor) != 10**power or symbol_of(heading.unit) == "rad":
+    power = round(log10(heading.factor))
+    if heading.factor != Fraction(10) ** power or symbol_of(heading.unit) == "rad":
         return pl.repeat(None, len(cells), dtype=pl.Float64, eager=True)
     if power and not cells.dtype.is_float():
         cells = cells.cast(pl.String)  # a decimal or a long integer would round twice
@@ -312,13 +305,12 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
         texts = cells.set(cells.str.len_bytes() > LONG_CELL, None)
         if comma:
             texts = texts.set(texts.str.contains(".", literal=True), None).str.replace(",", ".", literal=True)
-        exact = texts + f"e{power if factor > 1 else -power}" if power else texts
-        doubles = exact.cast(pl.Float64, strict=False)
+        doubles = (texts + f"e{power}" if power else texts).cast(pl.Float64, strict=False)
     else:
         doubles = cells.cast(pl.Float64, strict=False)
         # A column, as polars would divide by a single number in two steps, and round twice.
-        powers = pl.repeat(float(10**power), len(cells), eager=True)
-        doubles = doubles * powers if factor > 1 else doubles / powers
+        powers = pl.repeat(10.0 ** abs(power), len(cells), eager=True)
+        doubles = doubles * powers if power > 0 else doubles / powers
     if (zero := doubles == 0).any():  # a number too small for a double would become 0, another scene
         nonzero = cells.str.contains("[1-9]") if cells.dtype == pl.String else cells != 0
         doubles = doubles.set(zero & nonzero, None)  # the digit may be an exponent's
@@ -336,15 +328,12 @@ def _double(heading: Heading, comma: bool, cell: str | float) -> float | None:
         return None
     if read is None or read.uncertainty:
         return None
-    value: Any = read.value
-    if isinstance(value, InTerms):
-        value = value.number if value.terms == heading.terms else None
-    elif isinstance(value, Angle):
-        value = value.number if value.unit == "°" else None
-    if value is None or value == inf:
-        return None if value is None else inf
-    double = to_double(value)
-    return None if abs(double) == inf or (value and not double) else double
+    is_pair = isinstance(read.value, InTerms | Angle)
+    number, kind = read.value if is_pair else (read.value, heading.terms)
+    if kind not in (heading.terms, "°") or number == inf:
+        return inf if number == inf else None
+    double = to_double(number)
+    return None if abs(double) == inf or (number and not double) else double
 
 
 def _solve_row(
@@ -356,9 +345,9 @@ def _solve_row(
     except SceneError as error:
         return {ERROR: str(error)}, ()
     each = {name: answers.answer(name) for name in ("regime", *names)}
-    reasons = {(name, answer.reason) for name, answer in each.items() if answer.reason}
+    reasons = {name: answer.reason for name, answer in each.items() if answer.reason}
     values = {name: answer.value for name, answer in each.items()}
-    return values, {*reasons, *answers.decided.assumptions.items()}
+    return values, {*reasons.items(), *answers.decided.assumptions.items()}
 
 
 def _answers(columns: ReadColumns, shared: Mapping[str, Input], cells: Sequence[Any]) -> Answers:

@@ -123,5 +123,5 @@ def batch(
     if output != STDOUT:
         say_written(output)
     say(*remarks, *tally.lines())
-    missing = tally.missing and tally.rows > tally.errors
+    missing = {*asked} - tally.had and tally.rows > tally.errors
     return COULD_NOT if missing or tally.failures.rows or (tally.errors and not allow_errors) else DONE
