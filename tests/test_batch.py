@@ -184,7 +184,11 @@ def test_a_key_that_is_refused_later_says_where(batch: Batch, monkeypatch: pytes
     assert batch(rows, "--only a", "in.ndjson") == (1, "", f"atwood: cannot read IN: {why}\n")
     monkeypatch.setattr(sources, "BLOCK_BYTES", 8)
     answered = '{"m1":1,"m2":3,"acceleration":4.903325,"error":null}\n'
-    assert batch(rows, "--only a", "in.ndjson") == (1, answered, f"atwood: cannot read IN: {why} (after 1 row)\n")
+    assert batch(rows, "--only a", "in.ndjson") == (
+        1,
+        answered,
+        f"atwood: cannot read IN: {why} (after 1 row)\n",
+    )
 
 
 def test_the_first_error_is_that_of_the_whole_table(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:

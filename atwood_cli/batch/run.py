@@ -7,6 +7,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, nullcontext
 from decimal import Decimal
+from importlib import import_module
 from io import BytesIO, StringIO
 from itertools import chain, islice
 from pathlib import Path
@@ -46,8 +47,7 @@ class Job(NamedTuple):
 
 def run_batch(job: Job, tally: Tally) -> list[str]:
     """Solve a table of scenes. Returns sentences on how it was read. Raises OSError."""
-    import polars  # noqa: F401
-
+    import_module("polars")
     # As polars is imported, it takes Ctrl-C: a pipe would be waited for, and an interrupt raised twice.
     signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
     with ExitStack() as stack:
