@@ -459,7 +459,7 @@ def test_in_python_it_is_what_json_has() -> None:
         ({"m1": [1], "m2": [2], "a": [1], "unc": [1]}, {}, ValueError, "cannot read the runs: column 'unc' could be an uncertainty; name what of, as in 'u(t)'"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' conflicts with g, which gives it; leave one of them out"),
-        (EQUAL, {}, ArithmeticError, "2 runs cannot determine the pulley's inertia and axle friction: give 3 or more; some masses are 0.5 kg or more; if they are in g, say so, as in m1 (g)"),
+        (EQUAL, {}, ArithmeticError, "2 runs cannot determine the pulley's inertia and axle friction: give 3 or more; some masses are 0.5 kg or more; if g are meant, say so, as in m1 (g)"),
     ],
 )  # fmt: skip
 def test_in_python_errors_say_what_is_wrong(table: Any, more: Any, kind: type[Exception], words: str) -> None:

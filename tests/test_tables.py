@@ -149,8 +149,8 @@ def exactly(*rows: str) -> list[list[float]]:
 
 
 def test_uncertainties_are_in_the_unit_of_their_column(read: Any) -> None:
-    table = "m1 (g),±,m2 (g),±,t1 (s),t2 (s),u(t) (ms)\n200,± 0.1,207,0.2 g,3.9,4,20\n201,,207,±1%,5,,2e1\n"
-    first, second = "0.2 0.207 3.9 4 0.0001 0.0002 0.02 0.02", "0.201 0.207 5 0 0.00207 0.02"
+    table = "m1 (g),±,m2 (g),±,t1 (s),t2 (s),u(t) (ms)\n200,± 0.1,207,0.2 g,3.9,4,20\n0,,207,±1%,5,,2e1\n"
+    first, second = "0.2 0.207 3.9 4 0.0001 0.0002 0.02 0.02", "0 0.207 5 0 0.00207 0.02"
     assert numbers(runs := read(table)) == exactly(first, second)
     assert runs.remarks == [
         "read as: 'm1 (g)' as m1 in g, '±' as u(m1), 'm2 (g)' as m2 in g, '±' as u(m2), 't1 (s)',"
@@ -216,7 +216,7 @@ UNCERTAIN = "error|u|± a|σ|Uncertainty (s)|SD|std dev (s)|dt (s)|Unsicherheit 
     [
         ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", ": make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
         ("n,mass one (g),Zeit (s),mass two (g)\n1,2,3,4\n", "; give --column 'm1=mass one (g)' --column 'm2=mass two (g)' --column 't=Zeit (s)'"),
-        ("m1,m2,t,F (N),SD,Fall t (s),dt (s)\n1,2,3,4,5,6,7\n", "'SD' could be an uncertainty, as could 'dt (s)'; name what of"),
+        ("m1,m2,t,F (N),SD,Fall t (s),dt (s)\n1,2,3,4,5,6,7\n", "columns 'SD', 'dt (s)' could be an uncertainty; name what of"),
         *((f"m1,m2,t,{column}\n1,2,3,4\n", f"column '{column}' could be an uncertainty") for column in UNCERTAIN),
     ],
 )  # fmt: skip
@@ -322,9 +322,15 @@ def test_a_workbook_with_a_password_is_refused(read: Any) -> None:
         read(bytes(content), "runs.ods")
 
 
-def test_sheets_by_name(batch: Batch) -> None:
+def test_sheets_by_name(batch: Batch, read: Any) -> None:
     ran = batch(workbook(ODS), "--only a --sheet Las", "in.ods")
     assert ran.err == "atwood: cannot read IN: there is no sheet 'Las'; there are 'Old' (hidden), 'Lab'\n"
+    ran = batch(workbook(ODS), "--only a --sheet Old", "in.ods")
+    assert ran.err == "atwood: cannot read IN: sheet 'Old' of 'Old' (hidden), 'Lab' is empty\n"
+    notes = workbook({"content.xml": ODS["content.xml"].replace(">m1<", ">Notes<")})
+    assert "; sheet 'Lab' of 'Old' (hidden), 'Lab'; give --column m1" in batch(notes, "", "in.ods").err
+    with pytest.raises(Unreadable, match=r"; sheet 'Lab' of 'Old' .* m1 is missing"):
+        read(notes, "runs.ods")
     plain = ODS["content.xml"].replace("<text:p>Lab 3</text:p>", "")
     ran = batch(workbook({"content.xml": plain}), "--only a --digits 3 --sheet Lab", "in.ods")
     assert ran.out.splitlines()[1:] == ["200.1 g,0.21,00:00:03.99,2%,0.237,", "200.1 g,0.22,3,0.1,0.465,"]

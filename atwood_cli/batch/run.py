@@ -50,6 +50,7 @@ def run_batch(job: Job, tally: Tally) -> list[str]:
     import_module("polars")
     # As polars is imported, it takes Ctrl-C: a pipe would be waited for, and an interrupt raised twice.
     signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
+    how: list[str] = []
     with ExitStack() as stack:
         try:
             source, how = opened_table(job.source, job.sheet, stack)
@@ -62,7 +63,8 @@ def run_batch(job: Job, tally: Tally) -> list[str]:
             target.flush()
         except Unreadable as error:
             after = f" (after {counted(tally.rows, 'row')})" if tally.rows else ""
-            raise cannot_read(job.source, Unreadable(f"{error}{after}", error.options)) from None
+            why = "; ".join([f"{error}{after}", *how])
+            raise cannot_read(job.source, Unreadable(why, error.options)) from None
     return [*(f"read: {remark}." for remark in how), *remarks]
 
 

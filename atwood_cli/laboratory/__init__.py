@@ -127,11 +127,7 @@ def fit_of(
 def _read_given(name: str, value: Given) -> Input:
     """Read what all runs share; a hanger is a mass. Raises SceneError."""
     try:
-        read = read_input("m1" if name == "hanger" else name, value)
+        return read_input("m1" if name == "hanger" else name, value)
     except SceneError as error:
         is_list = "atwood sweep" in error.rule
         raise SceneError(name, value, "must be one number, for all runs" if is_list else error.rule) from None
-    if name in (*MASSES, "hanger") and read.uncertainty:
-        rule = "has an uncertainty, which no mass of all runs may have; state it in cells"
-        raise SceneError(name, value, rule)
-    return read

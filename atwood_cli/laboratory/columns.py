@@ -1,6 +1,7 @@
 """Which columns of a table hold the quantities of runs, and what the headings of others may mean."""
 
 import re
+from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from shlex import quote
 from typing import Literal
@@ -17,6 +18,7 @@ from ..tables.headings import (
     Vocabulary,
     is_mass,
     is_unit,
+    left_unread,
     listed,
     name_at_start,
     read_headings,
@@ -45,10 +47,11 @@ LIKE_UNCERTAINTY = re.compile(
 LIKE_THEORY = re.compile("theo|teór|calc|expect|predict", re.IGNORECASE)
 MEAN = r"\b(?:avg|average|mean|mittel(?:wert)?|moyenne|promedio|m[eé]dia)\b"
 LIKE_MEAN = re.compile(MEAN, re.IGNORECASE)
-LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
+LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d+(?!\d|st|nd|rd|th)")
+MASS_NOT_READ = "could be a mass that is not read; add it to m1 or m2"
 LIKE_MASS = re.compile(
-    r"(?:\b|_)(?:(?<!\d )m\d*|mass\w*|masas?|масс\w*|gewicht\w*|weights?|hangers?|(?:over|pay)?load|rider"
-    r"|beban|peso|poids|\w*груз\w*)(?:\b|_)",
+    r"(?:\b|[_ΔΣ∑])(?:(?<!\d )m\d*|mass\w*|masas?|масс\w*|gewicht\w*|weights?|hangers?|(?:over|pay)?load"
+    r"|rider|beban|peso|poids|\w*груз\w*)(?:\b|_)",
     re.IGNORECASE,
 )
 
@@ -110,6 +113,7 @@ def _missing(
 ) -> tuple[str, str]:
     """Return which columns runs need, those of the table, and options that name what is missing."""
     why = f"runs need m1, m2, and a, or t with the height of fall, drop; there are {listed(sheet.columns)}"
+    why += "".join(f"; {remark}" for remark in sheet.remarks)
     why += f"; {', '.join(missing)} {'are' if missing[1:] else 'is'} missing"
     is_turned = left and all(LIKE_NUMBER.match(column) for column, _ in left)
     if is_turned or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
@@ -121,23 +125,22 @@ def _missing(
     options, hints = [f"--column {quote(f'{name}={column}')}" for column, name in named.items()], ""
     for name in missing:
         fitting = _fitting(name, left)[: None if name in ("t", "a") else 1]
+        if name == "t" and not fitting:  # columns that are numbered alone are repeats
+            repeats = _alike([column for column in left if column not in speeds])
+            fitting = repeats if repeats[1:] else []
         left = [column for column in left if column not in fitting]
         absent = "--drop HEIGHT" if name == "drop" else f"--column {name}=HEADING"
         options += [f"--column {quote(f'{name}={column}')}" for column, _ in fitting] or [absent]
         if name == "m1" and not fitting:
             compute = "; of a total and a difference, compute m1 and m2 as (total ± difference)/2"
             hints += compute if sums else ", or --m1 0 if m2 alone hangs"
-        if name == "t" and not fitting and left:
-            compute = "; of a speed v after a fall from rest by h, compute a = v²/(2h)"
-            hints += compute if speeds else "; name each column of repeats so" if left[1:] else ""
+        if name == "t" and not fitting and speeds:
+            hints += "; of a speed v after a fall from rest by h, compute a = v²/(2h)"
     return why, f"; give {' '.join(options)}{hints}"
 
 
 def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Return the unread columns that may hold a quantity, by name, or else by their unit or that of a cell.
-
-    Of several, the headings differ from the first in a number or a letter alone, as those of repeats do.
-    """
+    """Return the unread columns that may hold a quantity by name, or else by their unit or that of a cell."""
     meaning, ranks = Heading(0, "", SPELLINGS.get(name, name)), dict[tuple[str, str], int]()
     for column, cell in unread:
         unit = unit_within(column, meaning)
@@ -145,29 +148,41 @@ def _fitting(name: str, unread: Sequence[tuple[str, str]]) -> list[tuple[str, st
         is_named = 2 * (name_at_start(column, VOCABULARY) == meaning.name)
         is_mass = name in MASSES and LIKE_MASS.search(column[:LONGEST_HEADING])
         ranks[column, cell] = (is_named or int(fits or bool(is_mass))) if fits or not unit else 0
-    best = [x for x, rank in ranks.items() if rank == max(ranks.values()) > 0]
-    alike = [re.sub(r"\d+(?:st|nd|rd|th)?|\b[A-Za-z]\b", "", column) for column, _ in best]
-    return [x for x, words in zip(best, alike, strict=True) if words == alike[0]]
+    return _alike([x for x, rank in ranks.items() if rank == max(ranks.values()) > 0])
+
+
+def _alike(columns: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return the most columns whose headings differ in a number or a letter alone, as those of repeats do."""
+    words = [re.sub(r"\b[A-Za-z]\b", "", re.sub(r"\d+(?:st|nd|rd|th)?", "#", x)) or x for x, _ in columns]
+    most = max(words, key=words.count, default="")
+    return [x for x, rest in zip(columns, words, strict=True) if rest == most]
 
 
 def check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, str]]) -> None:
-    """Raise Unreadable for a column of numbers that could hold a quantity, and is no label then."""
+    """Raise Unreadable for columns of numbers that could hold a quantity, and are no labels then."""
     measured = {own.place for own in headings if own.name in MEASURED}
-    mass = Heading(0, "", "m1")
-    uncertain = [column for column, _ in unread.values() if LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING])]
-    for place, (column, _) in unread.items():
-        unit = unit_within(column, mass)
-        if column in INPUTS:
-            raise refused(column, "has no effect on a fit")
-        if not column.strip() and place - 1 in measured:
-            raise refused(column, "has numbers and no heading, behind a measurement; give it one")
-        if column in uncertain:
-            others = f", as could {listed(uncertain[1:])}" if uncertain[1:] else ""
-            difference = " or a difference" if LIKE_SUM.search(column[:LONGEST_HEADING]) else ""
-            raise refused(column, f"could be an uncertainty{difference}{others}; name what of, as in 'u(t)'")
-        may_be_mass = (not unit or is_unit(unit, mass)) and LIKE_MASS.search(column[:LONGEST_HEADING])
-        if is_mass(column) or may_be_mass:
-            if LIKE_SUM.search(column[:LONGEST_HEADING]):
-                raise refused(column, NO_MASS)
-            way = ", or give it as --hanger if it hangs on both sides"
-            raise refused(column, "looks like a mass that is not read; add it to m1 or m2", way)
+    of_columns = {x: why for i, (x, _) in unread.items() if (why := _doubt(x, is_behind=i - 1 in measured))}
+    doubts = defaultdict[str, list[str]](list)
+    for column, why in of_columns.items():
+        doubts[why].append(in_quotes(column))
+    if doubts:
+        way = "; give what hangs on both sides as --hanger" if MASS_NOT_READ in doubts else ""
+        whys = (f"column{'s' if x[1:] else ''} {', '.join(x)} {why}" for why, x in doubts.items())
+        raise Unreadable("; ".join(whys), f"{way}{left_unread(*of_columns)}")
+
+
+def _doubt(column: str, is_behind: bool) -> str:
+    """Return what a column of numbers could be, "" for a label; it may stand behind a measurement."""
+    text, mass = column[:LONGEST_HEADING], Heading(0, "", "m1")
+    unit = unit_within(column, mass)
+    may_be_mass = is_mass(column) or ((not unit or is_unit(unit, mass)) and LIKE_MASS.search(text))
+    uncertainty = "an uncertainty; name what of, as in 'u(t)'" * bool(LIKE_UNCERTAINTY.search(text))
+    if column in INPUTS:
+        return "would have no effect on a fit"
+    if not column.strip() and is_behind:
+        return "could be a measurement; give it a heading"
+    if may_be_mass and LIKE_SUM.search(text):
+        return f"{NO_MASS}, or {uncertainty}" if uncertainty else NO_MASS
+    if uncertainty:
+        return f"could be {uncertainty}"
+    return MASS_NOT_READ if may_be_mass else ""

@@ -14,7 +14,7 @@ from ..numbers.text import counted
 from ..reading.names import divided, read_names
 from ..solver import physics
 from ..solver.decisions import Decisions
-from ..solver.scene import Input, Scene, SceneError, parameter_of
+from ..solver.scene import MASSES, Input, Scene, SceneError, parameter_of
 from .estimate import (
     TINY,
     Data,
@@ -29,7 +29,17 @@ from .estimate import (
     separates,
 )
 from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, published, rounded
-from .runs import OUT_OF_RANGE, Column, Places, Runs, Selection, behind_an_error, in_range, in_words
+from .runs import (
+    OUT_OF_RANGE,
+    REACHES_0,
+    Column,
+    Places,
+    Runs,
+    Selection,
+    behind_an_error,
+    in_range,
+    in_words,
+)
 from .statistics import CannotSeparate, Line, distances_from, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
@@ -110,14 +120,20 @@ def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
     return Conditions(inputs, Scene.of({**inputs, **masses}))
 
 
-def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
-    """Yield the conditions with each uncertain one less and more by its uncertainty. Raises SceneError."""
+def _neighbours(runs: Runs, used: Selection, given: Conditions) -> Iterator[list[tuple[Data, Conditions]]]:
+    """Yield runs and conditions with each uncertain input of all runs at its two ends. Raises SceneError."""
+    data = as_data(runs, used)
     for x, typed in given.inputs.items():
         if u := typed.uncertainty:
             size = given.scene.number_of(x)
             if not parameter_of(x).may_be_zero and u >= size:
-                raise SceneError(x, typed.given, "has an uncertainty that reaches 0")
-            yield [given._replace(scene=given.scene.with_number(x, end)) for end in (size - u, size + u)]
+                raise SceneError(x, typed.given, REACHES_0)
+            scenes = [given.scene.with_number(x, end) for end in (size - u, size + u)]
+            yield [(data, given._replace(scene=scene)) for scene in scenes]
+    for name, spread in runs.common.items():
+        shifted = MASSES if name == "hanger" else (name,)
+        for_ends = [{**runs.given, **{x: runs.given[x] + u for x in shifted}} for u in (-spread, spread)]
+        yield [(as_data(runs._replace(given=end), used), given) for end in for_ends]
 
 
 def read_find(words: Sequence[str], given: Conditions) -> list[str]:
@@ -202,8 +218,8 @@ def _with_results(runs: Runs, used: Selection, data: Data, given: Conditions, na
     try:
         values, line = estimate(data, given.values, names)
         ends = [
-            [_with_derived(estimate(data, near.values, names, values)[0], names, near) for near in pair]
-            for pair in _neighbours(given)
+            [_with_derived(estimate(near, by.values, names, values)[0], names, by) for near, by in pair]
+            for pair in _neighbours(runs, used, given)
         ]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
         message = CHECK

@@ -41,12 +41,14 @@ LARGE = {
     "m2": LARGE_MASSES,
     "drop": (10, "some heights of fall are 10 m or more", "cm"),
     "time": (1000, "some times are 1000 s or more", "ms"),
+    "R": (1, "the radius is 1 m or more", "cm"),
 }
 """The numbers, in SI units, from which a laboratory may have left out a smaller unit, and what to say."""
 CART = 5
 """The ratio of m1 to each m2 above which m1 may be a cart, or a cylinder that is turned."""
 ZERO = re.compile(r"[+-]?0+([.,]0*)?( ?[^\W\d_]+)?|")
 MEASURABLE = 1e-30, 1e30
+REACHES_0 = "has an uncertainty that reaches 0"
 OUT_OF_RANGE = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
 
 
@@ -56,8 +58,10 @@ class Runs(NamedTuple):
     Columns of runs (n): ``given`` has m1 and m2 (kg), and drop (m) if times were measured, ``u`` their
     uncertainties; ``rows`` are the numbers of their rows, ``mean`` is that of the values. Columns of
     measurements: ``values`` as typed (m/s² or s), ``u_values`` (0 if no uncertainty is stated), the ``run``
-    of each, and ``cells``, where they stand: 8:t2. ``step`` is that of the last digit of any value. ``same``
-    are conditions that the table has, the same in all rows. ``doubts`` say what may have been read wrongly.
+    of each, and ``cells``, where they stand: 8:t2. ``step`` is that of the last digit of any value.
+    ``remarks`` say how the table was read, and ``doubts`` what may be wrong with its numbers. ``common`` has
+    the uncertainties of a mass, or a hanger, that is one in all runs. ``same`` are conditions that the table
+    has, the same in all rows.
     """
 
     kind: Kind
@@ -73,6 +77,7 @@ class Runs(NamedTuple):
     step: float
     remarks: Sequence[str] = ()
     doubts: Sequence[str] = ()
+    common: Mapping[str, float] = {}
     same: Mapping[str, Input] = {}
 
     @property
@@ -126,28 +131,22 @@ def read_runs(
     words = [f"{in_quotes(sheet.columns[0])} as the numbers of rows"] if numbers else []
     words += [f"{in_quotes(column)} as a label" for column, _ in unread.values()]
     by = {x: given[x].value for x in ("R", "g") if x in given and not given[x].uncertainty}
-    given = {x: _in_own_terms(x, read, by) for x, read in given.items() if x in (*MASSES, "drop", "hanger")}
-    hanger = given.get("hanger")
-    extra = hanger.value if hanger else Fraction(0)
-    if hanger:
+    shared = {x: _in_own_terms(x, given[x], by) for x in (*MASSES, "hanger", "drop") if x in given}
+    common = {x: float(u) for x, (_, u, _) in shared.items() if u and x != "drop"}
+    if wide := [x for x in common if shared[x].uncertainty >= shared[x].value]:
+        raise SceneError(wide[0], given[wide[0]].given, REACHES_0)
+    hanger = shared.pop("hanger", Input(Fraction(0), Fraction(0), None))
+    if hanger.given is not None:
         words.append(f"{shortened(str(hanger.given))} of hanger added to m1 and m2")
+    added = {**dict.fromkeys(MASSES, hanger.value), "drop": Fraction(0)}
+    for_all = {x: (read.value + added[x], Fraction(0)) for x, read in shared.items()}
     with_units = [x for x in places if all(row[x] in EMPTY or OWN_UNIT.search(row[x]) for row in sheet.rows)]
     remarks = read_as(headings, sheet.separator, comma, [*words, *sheet.remarks], with_units)
-    # The uncertainty of what is shared counts for all runs together.
-    shared = {
-        x: (read.value + extra * (x in MASSES), Fraction(0)) for x, read in given.items() if x != "hanger"
-    }
-    # What has no unit may have been meant in a smaller one.
-    bare = {heading.name for heading in headings if not heading.unit and heading.place not in with_units}
-    bare |= {x for x, read in given.items() if not OWN_UNIT.search(str(read.given))}
     same, runs, unused = dict[str, Input](), RowsOfRuns(), defaultdict[str, list[int]](list)
     numbers = numbers or list(range(1, len(sheet.rows) + 1))
     for number, row in zip(numbers, sheet.rows, strict=True):
-        if _begins_trace(row, headings):
-            unused["the height and the time are 0"].append(number)
-            continue
-        if any(map(STATISTIC.fullmatch, row)):
-            unused["a mean or a standard deviation is no run"].append(number)
+        if why := _no_run(row, headings):
+            unused[why].append(number)
             continue
         inputs, measured = dict[str, Number](), dict[str, Number]()
         try:
@@ -160,12 +159,12 @@ def read_runs(
             if heading.name in MEASURED:
                 measured[f"{number}:{heading.name[0]}{heading.number}"] = cell[:2]
             elif heading.name not in CONDITIONS:
-                inputs[heading.name] = cell.value + extra * (heading.name in MASSES), cell.uncertainty
+                inputs[heading.name] = cell.value + added[heading.name], cell.uncertainty
             elif same.setdefault(heading.name, cell)[:2] != cell[:2]:
                 why = f"differs between rows; a fit takes one {heading.name}, so fit the rows of each apart"
                 raise refused(heading.column, why)
         if measured:
-            rows, measurements = runs.setdefault(tuple({**inputs, **shared}.items()), ([], {}))
+            rows, measurements = runs.setdefault(tuple({**inputs, **for_all}.items()), ([], {}))
             rows.append(number)
             measurements.update(measured)
         else:
@@ -177,19 +176,29 @@ def read_runs(
     if left_out:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
     result = _as_columns(kind, runs, numbers, left_out)
-    columns, doubts = {**result.given, kind: result.values}, list[str]()
-    for x, (least, what, unit) in LARGE.items():
-        if x in bare and max(columns.get(x, [0])) >= least and not any(what in doubt for doubt in doubts):
-            example = f"{given[x].given}{unit}" if x in given else f"{x} ({unit})"
-            doubts.append(f"{what}; if they are in {unit}, say so, as in {example}.")
     heights = {dict(run).get("drop") for run in runs}
     if "drop" not in given and len(heights) == 1 and (height := heights.pop()):
         same["drop"] = Input(*height, None)  # if it is wrong, it is so in all runs alike
         result.u["drop"][:] = 0
-    m1, m2 = (result.given[mass] for mass in MASSES)
+    has_unit = {own.name for own in headings if own.unit or own.place in with_units}
+    doubts = _doubts(result, {**given, **same}, has_unit)
+    return result._replace(remarks=remarks, doubts=doubts, common=common, same=same)
+
+
+def _doubts(runs: Runs, given: Mapping[str, Input], has_unit: Collection[str]) -> list[str]:
+    """Say which large numbers without a unit may be in a smaller one, and that m1 may be a cart."""
+    sizes: dict[str, Any] = {x: read.value for x, read in given.items()}
+    sizes |= {x: max(column) for x, column in {**runs.given, runs.kind: runs.values}.items()}
+    doubts = dict[str, str]()
+    for x, (least, what, unit) in LARGE.items():
+        typed = str(given[x].given or "") if x in given else ""
+        if not (x in has_unit or OWN_UNIT.search(typed)) and sizes.get(x, 0) >= least:
+            example = f"{typed}{unit}" if typed else f"{x} ({unit})"
+            doubts.setdefault(what, f"{what}; if {unit} are meant, say so, as in {example}.")
+    m1, m2 = (runs.given[mass] for mass in MASSES)
     if min(m1) == max(m1) > CART * max(m2):
-        doubts.append(f"m1 is {m1[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1.")
-    return result._replace(remarks=remarks, doubts=doubts, same=same)
+        doubts[""] = f"m1 is {m1[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1."
+    return [*doubts.values()]
 
 
 def _in_own_terms(name: str, read: Input, by: Mapping[str, Any]) -> Input:
@@ -209,23 +218,25 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Seq
     measured = [cells for _, cells in runs.values()]
     known = {*map(str, numbers), *(cell for cells in measured for cell in cells)}
     if absent := [word for word in words if word not in known]:
-        rows = f"{numbers[0]} to {numbers[-1]}"
-        rule = f"is neither a row, {rows}, nor a measurement, as {next(iter(measured[0]))}"
+        ends = f"{numbers[0]} to {numbers[-1]}"
+        rule = f"is neither a row, {ends}, nor a measurement, as {next(iter(measured[0]))}"
         raise SceneError("without", absent[0], rule)
     kept = [{x: cells[x] for x in cells if {x, x.split(":")[0]}.isdisjoint(words)} for cells in measured]
     used = [some or cells for some, cells in zip(kept, measured, strict=True)]
     cells = [cell for some in used for cell in some]
     values, u_values = np.array([number for some in used for number in some.values()], float).T
-    lacking = [cell for some in kept for cell, (_, u) in some.items() if not u]
-    if 0 < len(lacking) < sum(map(len, kept)):
-        none = f"{in_words(lacking[0])} has no uncertainty, or one of 0"
-        raise Unreadable(f"{none}; give one above 0, as others have")
+    stated = [(cell, u) for some in kept for cell, (_, u) in some.items()]
+    _check_all_have_u([cell for cell, _ in stated], [u for _, u in stated])
     given = {x: np.array([dict(run)[x] for run in runs], float).T for x, _ in next(iter(runs))}
+    rows = [rows for rows, _ in runs.values()]
+    for x, (column, u) in given.items():
+        places = [i for i, some in enumerate(kept) if some and column[i]]  # a mass of 0 is exact
+        _check_all_have_u([f"{rows[i][0]}:{x}" for i in places], u[places])
     return Runs(
         kind,
         {x: column for x, (column, _) in given.items()},
         {x: u for x, (_, u) in given.items()},
-        [rows for rows, _ in runs.values()],
+        rows,
         np.array([not some for some in kept]),
         np.array([sum(value for value, _ in some.values()) / len(some) for some in used], float),
         values,
@@ -234,6 +245,14 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Seq
         cells,
         10.0 ** min(0, *(int(ALL_DIGITS.normalize(Decimal(str(x))).as_tuple().exponent) for x in values)),
     )
+
+
+def _check_all_have_u(places: Sequence[str], u: Sequence[Any] | Column) -> None:
+    """Raise Unreadable if some numbers have an uncertainty and others none; they stand in these places."""
+    lacking = [place for place, x in zip(places, u, strict=True) if not x]
+    if 0 < len(lacking) < len(places):
+        none = f"{in_words(lacking[0])} has no uncertainty, or one of 0"
+        raise Unreadable(f"{none}; give one above 0, as others have")
 
 
 def behind_an_error(remarks: Sequence[str]) -> str:
@@ -256,10 +275,13 @@ def in_range(read: Input) -> bool:
     return all(low <= abs(size) <= high for size in sizes if size)
 
 
-def _begins_trace(row: Sequence[str], headings: Sequence[Heading]) -> bool:
-    """Decide whether a row has a height and a time of 0, as where a trace of positions begins."""
-    cells = [(heading.name, row[heading.place]) for heading in headings if heading.name in ("drop", "time")]
-    return len({name for name, _ in cells}) == 2 and all(ZERO.fullmatch(cell.strip()) for _, cell in cells)
+def _no_run(row: Sequence[str], headings: Sequence[Heading]) -> str:
+    """Return why a row is no run, as where a trace of positions begins, or "" """
+    if any(map(STATISTIC.fullmatch, row)):
+        return "a mean or a standard deviation is no run"
+    cells = [(own.name, row[own.place].strip()) for own in headings if own.name in ("drop", "time")]
+    begins = len({name for name, _ in cells}) == 2 and all(ZERO.fullmatch(cell) for _, cell in cells)
+    return "the height and the time are 0" if begins else ""
 
 
 def _read_row(

@@ -34,8 +34,8 @@ MOST_ABOVE = 40
 """The most rows of titles above the headings."""
 ABOVE = "lines above the headings left out"
 SIGN = r"(?:±|\+/?-)"
-STATED = re.compile(rf"[(\[]{SIGN}\s*(NUMBER)[)\]]|{SIGN}\s*(NUMBER)".replace("NUMBER", r"[\d.,]*\d(?: ?%)?"))
-"""An uncertainty in a heading, perhaps alone in its brackets."""
+STATED = re.compile(rf"{SIGN}\s*([\d.,]*\d)\s*(%|[^\W\d_][^\s()\[\],]*)?")
+"""An uncertainty of all cells in a heading, and the word behind it, perhaps its unit: m1 (±1 g)."""
 BRACKET = r"[(\[]([^()\[\]]*)[)\]]"
 DIVIDED = (rf"(.+?)[ /]*{BRACKET}", r"([^/]+?) ?(?:/| in ) ?(.+)")
 """The patterns of a name with its unit: m1 (g), m1 [g], a/(m/s²); m1/g, m1 in g."""
@@ -46,7 +46,7 @@ MASS_NAMES = {f"{word}{number}": f"m{number}" for word in MASS_WORDS for number 
 """The masses by names that can mean nothing else, without blanks."""
 LIKE_SUM = re.compile(r"total|gesamt|\bsum|somme|diff|dif[ei]r|^\W*[Σ∑Δ]|\bm[\w ]*[-–−+] ?m", re.IGNORECASE)
 """The headings of sums and of differences."""
-NO_MASS = "looks like a sum or a difference of masses, which is not read"
+NO_MASS = "could be a sum or a difference of masses, which is not read"
 UNCERTAINTY = re.compile(r"u ?\((.+)\)|(.+?)[ _]err")
 OF_COLUMN_BEFORE = ("±", "+/-")
 """The names of columns that hold the uncertainties of the column before."""
@@ -113,6 +113,8 @@ def read_headings(
         heading = None if column in labels else _meaning(column, vocabulary, named)
         if not heading:
             continue
+        if heading.stated and not vocabulary.uncertain:
+            raise refused(column, "states an uncertainty, which only solve and fit take")
         heading = heading._replace(place=place)
         name, number = heading.name, heading.number
         if heading.uncertain:
@@ -177,11 +179,11 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
 
 def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Heading | None:
     """Return what a column holds, without its place and factor; None if the heading is not known."""
-    bare, stated = _without_uncertainty(column)
-    for word, unit, is_loose in divisions(without_blanks(named.get(column, bare))):
+    text, stated, its_unit = _apart(column)
+    for word, unit, is_loose in divisions(without_blanks(named.get(column, text))):
         meaning = _named(word, vocabulary)
         if meaning and not (is_loose and not is_unit(unit, meaning)):
-            if column in named and (own := unit_within(bare, meaning)) != unit:
+            if column in named and (own := unit_within(text, meaning)) != unit:
                 if unit and is_unit(own, meaning):
                     why = f"has the unit {in_quotes(own)}, not {in_quotes(unit)}"
                     raise refused(column, f"{why}; give --column without a unit")
@@ -190,18 +192,20 @@ def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> H
             is_symbol = unit == meaning.name[:1] or vocabulary.names.get(unit) == meaning.name
             if unit in NO_UNIT or (is_symbol and not is_unit(unit, meaning)):
                 unit = ""
-            if stated and not vocabulary.uncertain:
-                raise refused(column, "states an uncertainty, which only solve and fit take")
-            return meaning._replace(column=column, unit=unit, stated=stated)
+            if not unit and is_unit(its_unit, meaning):
+                unit = its_unit
+            return meaning._replace(column=column, unit=unit, stated=stated + its_unit)
     return None
 
 
-def _without_uncertainty(column: str) -> tuple[str, str]:
-    """Return a heading without the uncertainty that it states, and that: m1 (g) and 1 of m1 (±1 g)."""
-    match = STATED.search(column[:LONGEST_HEADING])
-    if not match:
-        return column, ""
-    return f"{column[: match.start()]} {column[match.end() :]}", match[1] or match[2]
+def _apart(column: str) -> tuple[str, str, str]:
+    """Return a heading without the uncertainty of all cells that it states, this number, and its unit."""
+    if not (match := STATED.search(column[:LONGEST_HEADING])):
+        return column, "", ""
+    number, word = match.groups(default="")
+    unit = word if word == PERCENT or symbol_of(word) else ""
+    rest = f"{column[: match.start()]} {word.removeprefix(unit)}{column[match.end() :]}"
+    return without_blanks(re.sub(r"[(\[]\s*[)\]]", " ", rest)), number.replace(",", "."), unit
 
 
 def divisions(text: str) -> Iterator[tuple[str, str, bool]]:
@@ -297,13 +301,18 @@ def unit_factor(heading: Heading) -> Fraction:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
         return read_unit(unit, dimension)
     except Malformed as error:
-        raise refused(column, f"{error}; rename it", naming(name, column) if dimension else "") from None
+        way = naming(f"u({name})" if heading.uncertain else name, column, name) if dimension else ""
+        raise refused(column, f"{error}; rename it", way) from None
 
 
-def naming(name: str, column: str) -> str:
-    """Return the words on an option that names a column, with a unit if its quantity has one."""
-    unit = parameter_of(name).unit
-    has_unit = not unit or is_unit(unit_within(column, Heading(0, column, name)), Heading(0, column, name))
+def naming(name: str, column: str, of: str = "") -> str:
+    """Return the words on an option that names a column, with a unit if its quantity has one.
+
+    The quantity is the name, unless that is of one: u(time) is ``of`` time.
+    """
+    meaning = Heading(0, column, of or name)
+    unit = parameter_of(meaning.name).unit
+    has_unit = not unit or is_unit(unit_within(column, meaning), meaning)
     typed = f"{name}={column}" if has_unit else f"{name} ({unit})={column}"
     return f", or give --column {_as_typed(typed)}{'' if has_unit else ', with the unit of its cells'}"
 
@@ -316,8 +325,13 @@ def is_mass(column: str) -> bool:
 
 def refused(column: str, why: str, way: str = "") -> Unreadable:
     """Return the error for a heading; a user of the command may go another ``way``, or label the column."""
-    way += f"; --label {_as_typed(column)} leaves it unread"
-    return Unreadable(f"column {in_quotes(column)} {why}", way)
+    return Unreadable(f"column {in_quotes(column)} {why}", f"{way}{left_unread(column)}")
+
+
+def left_unread(*columns: str) -> str:
+    """Return the options that leave columns unread, to stand behind an error."""
+    labels = " ".join(f"--label {_as_typed(column)}" for column in columns)
+    return f"; {labels} leaves {'them' if columns[1:] else 'it'} unread"
 
 
 def _as_typed(word: str) -> str:
@@ -352,16 +366,17 @@ def read_as(
     own; if this is not known (None), or no column has another heading, those headed by their own name are
     left out.
     """
-    columns = {own.place: (own.column, own.name, own.unit, own.stated) for own in headings}
-    columns |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit, "") for own in headings if own.u}
+    stated = {own.place: f" ± {own.stated}" for own in headings if own.stated}
+    columns = {own.place: (own.column, own.name, own.unit) for own in headings}
+    columns |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit) for own in headings if own.u}
     alike = dict[tuple[bool, str], list[str]]()
-    has_all = with_units is not None and any(column != name for column, name, *_ in columns.values())
-    for place, (column, name, unit, stated) in sorted(columns.items()):
+    has_all = with_units is not None and any(column != name for column, name, _ in columns.values())
+    for place, (column, name, unit) in sorted(columns.items()):
         is_open = not unit and "(" not in name and place not in (with_units or ())
         usual = parameter_of(name).unit if is_open else ""
         if column != name or (usual and has_all):
-            words = f" as {name}{f' ± {stated}' if stated else ''}" if column != name else ""
-            words += f" in {unit or usual}" if unit or usual else ""
+            words = f" as {name}" if column != name else ""
+            words += (f" in {unit or usual}" if unit or usual else "") + stated.get(place, "")
             alike.setdefault((bool(usual), words), []).append(in_quotes(column))
     given, assumed = (
         [", ".join(names) + words for (is_assumed, words), names in alike.items() if is_assumed is which]
@@ -425,8 +440,7 @@ def read_cell(heading: Heading, row: Sequence[Any], comma: bool) -> Input | None
             raise SceneError(heading.u.column, u, f"is a second uncertainty, beside {in_quotes(cell)}")
         uncertainty = _read_uncertainty(heading.u, u, value, comma)
     elif heading.stated and not uncertainty:
-        stated = heading._replace(unit="")
-        uncertainty = _read_uncertainty(stated, heading.stated.replace(",", "."), value, False)
+        uncertainty = _read_uncertainty(heading._replace(unit=""), heading.stated, value, False)
     return Input(InTerms(value, terms) if terms else value, uncertainty, cell)
 
 

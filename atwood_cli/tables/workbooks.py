@@ -72,8 +72,10 @@ def workbook_as_csv(file: IO[bytes], name: str | None) -> tuple[bytes, list[str]
     except DAMAGE as error:
         why = getattr(error, "strerror", None) or str(error)
         raise Unreadable(f"it is damaged, has a password, or is no workbook: {why}") from None
+    if not cells:
+        raise Unreadable(f"sheet {in_quotes(shown)} of {names} is empty")
     rows = sorted({row for row, _ in cells})
-    columns = range(1 + max((column for _, column in cells), default=0))
+    columns = range(1 + max(column for _, column in cells))
     if len(columns) * len(rows) > MOST_CELLS:
         raise Unreadable(TOO_MANY)
     for first in [first for first in merged if first in cells]:
