@@ -1,6 +1,7 @@
 """A fit as sentences, tables, JSON and CSV: what the runs determine, their outliers, what to vary."""
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from math import log10, sqrt
 from typing import Any
 
@@ -94,12 +95,17 @@ def conditions(fit: Fitted) -> str:
 # Records and pages
 
 
-def results_of(fit: Fitted, in_python: bool = False) -> Fit:
-    """Return all of a fit by name, with its sentences: first the verdict and the outliers."""
+def notes_of(fit: Fitted, in_python: bool = False) -> tuple[list[str], list[str], list[str]]:
+    """Return the verdict and warnings, how the runs were read and scatter, and what may be wrong in all."""
     messages = [message for _, message in fit.outliers], fit.causes
     outliers, causes = ([f"{_capital(sentence(words, in_python))}." for words in some] for some in messages)
-    known = bool(fit.data.scatter.any())
     doubts, remarks = (map(_capital, some) for some in (fit.runs.doubts, fit.runs.remarks))
+    return [verdict(fit), *doubts, *outliers], [*remarks, _scatter(fit)], causes
+
+
+def results_of(fit: Fitted, in_python: bool = False) -> Fit:
+    """Return all of a fit by name, with its sentences: first the verdict and the warnings."""
+    known = bool(fit.data.scatter.any())
     return Fit(
         **{name: fit.results[name].value if name in fit.results else None for name in QUANTITIES},
         uncertainty={name: result.uncertainty for name, result in fit.results.items()},
@@ -110,7 +116,7 @@ def results_of(fit: Fitted, in_python: bool = False) -> Fit:
         interval_dof=fit.line.t_dof if fit.line.t_dof < NORMAL_DOF else None,
         between_runs=sqrt(fit.line.between) / abs(fit.values["gravity"]) if known and fit.line.dof else None,
         runs=_records(fit),
-        notes=[verdict(fit), *doubts, *outliers, *remarks, _scatter(fit), *causes],
+        notes=[*chain(*notes_of(fit, in_python))],
     )
 
 
@@ -120,25 +126,20 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     record = public.to_dict()
     asked = {name: record[name] for name in only or record}
     rows: Sequence[Mapping[str, Any]] = [asked]
-    sentences = [*public.notes]
+    sentences = public.notes
     if only == ["runs"]:
         rows = public.runs
     elif only:
-        sentences = [equation(x, *results[x][:2]) for x in only if x in results]
-        sentences += [f"{RESULTS[x]}: {NOT_FITTED}." for x in only if record[x] is None]
-        first_cause = len(public.notes) - len(fit.causes)
-        sentences += [*public.notes[1 : _warnings(fit)], *public.notes[first_cause:]]
+        first, _, causes = notes_of(fit)
+        absent = [f"{RESULTS[x]}: {NOT_FITTED}." for x in only if record[x] is None]
+        sentences = [*(equation(x, *results[x][:2]) for x in only if x in results), *absent]
+        sentences += [*first[1:], *causes]
     else:
         names = "quantity", "value", "uncertainty", "low", "high", "unit"
         each = ((x, *result[:2], *result.interval, QUANTITIES[x].unit) for x, result in results.items())
         rows = [dict(zip(names, result, strict=True)) for result in each]
     bare = [cell(record[name]) for name in only]
-    return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, public), lambda: sentences, bare)
-
-
-def _warnings(fit: Fitted) -> int:
-    """Return the number of notes that stand first: the verdict, what may be read wrongly, and outliers."""
-    return 1 + len(fit.runs.doubts) + len(fit.outliers)
+    return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, public.runs), lambda: sentences, bare)
 
 
 def _correlation(covariance: Any) -> float | None:
@@ -167,21 +168,21 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
     ]
 
 
-def _print_page(fit: Fitted, public: Fit) -> None:
+def _print_page(fit: Fitted, runs: Sequence[Mapping[str, Any]]) -> None:
     """Print the conditions, the runs, what there is to say, and the results."""
-    page, kind, results, first = Page(), fit.runs.kind, fit.results, _warnings(fit)
+    page, kind, (first, *others) = Page(), fit.runs.kind, notes_of(fit)
     page.say(conditions(fit))
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
-    _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, public))
+    _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, runs))
     source = "with the scatter between runs added" if fit.data.scatter.any() else "as the residuals show it"
     between = f", {source}" if fit.line.between else ""
     has_columns = fit.data.stated or fit.data.uncertain
     independent = " Uncertainties in columns count as independent from row to row." if has_columns else ""
-    page.say(f"u is the standard uncertainty of a run's mean{between}.{independent}", *public.notes[first:])
-    page.say(*public.notes[:first], style="bold")
-    if results:
-        numbers = ((x, published(*result), QUANTITIES[x]) for x, result in results.items())
+    page.say(f"u is the standard uncertainty of a run's mean{between}.{independent}", *chain(*others))
+    page.say(*first, style="bold")
+    if fit.results:
+        numbers = ((x, published(*result), QUANTITIES[x]) for x, result in fit.results.items())
         rows = [(x, both, words.unit, words.symbol, ends) for x, (both, ends), words in numbers]
         value = "Value (outliers included)" if fit.outliers else "Value"
         _print_table(page, ("Quantity", value, "Unit", "Symbol", "95 % interval"), rows)
@@ -191,12 +192,12 @@ def _print_table(page: Page, heads: Sequence[str], rows: Sequence[Sequence[str]]
     page.table(heads, [list(zip(*map(aligned, zip(*rows, strict=True)), strict=True))])
 
 
-def _rows(fit: Fitted, public: Fit) -> list[list[str]]:
+def _rows(fit: Fitted, runs: Sequence[Mapping[str, Any]]) -> list[list[str]]:
     """Return the cells of each run: the measurement, what is expected, and the residual."""
     # The mean has the digits of its own scatter.
     finest = float(min(fit.data.scatter.min() or np.inf, fit.line.sigma.min()))
     rows = []
-    for run in public.runs:
+    for run in runs:
         masses, u, residual = (format_number(run[x]) for x in ("m1", "m2")), run["u"], run["residual"]
         numbers = cut(run[fit.runs.kind], finest), cut(run["expected"], finest), cut(u, u)
         last = "" if residual is None else f"{residual:z.2f}"
