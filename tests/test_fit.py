@@ -363,6 +363,8 @@ def test_what_is_given_and_uncertain_counts_for_all_runs_together() -> None:
     ):
         u_c = found(table, f"{words} --axle 0")["uncertainty"]["rim_mass"]
         assert u_c == pytest.approx(2.27 * u, rel=1e-6)
+    hung = found(table_of((l - 0.5, h - 0.5, a) for l, h, a in rows), "--g 9.81 --axle 0 --hanger '0.50(1)'")
+    assert hung["uncertainty"]["rim_mass"] == pytest.approx(0.02, rel=1e-6)  # one on each side
     radius = found(SIMMONS, "--R '25(1)mm'")
     c, I = (radius["uncertainty"][x] / radius[x] for x in ("rim_mass", "moment_of_inertia"))
     assert pytest.approx(sqrt(c**2 + 0.08**2)) == I
