@@ -5,12 +5,21 @@ import os
 import signal
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager, ExitStack, nullcontext
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import (
+    AbstractContextManager,
+    ExitStack,
+    contextmanager,
+    nullcontext,
+    redirect_stderr,
+    suppress,
+)
 from decimal import Decimal
 from importlib import import_module
-from io import BytesIO, StringIO
-from itertools import chain, islice
+from io import BytesIO, StringIO, TextIOWrapper
+from itertools import chain, islice, takewhile
 from pathlib import Path
+from threading import Event
 from typing import IO, TYPE_CHECKING, NamedTuple
 
 from ..numbers.digits import format_number, to_digits
@@ -23,7 +32,7 @@ from ..tables.headings import ABOVE, Heading, decimal_commas_in, listed, read_as
 from ..tables.records import BYTE_ORDER_MARK, Csv, Piece, read_ndjson
 from ..tables.sources import Unreadable, blocks_of, cannot_read, is_packed, is_stream
 from ..tables.workbooks import opened_table
-from .parquet import solve_parquet
+from .frames import with_results
 from .solving import ERROR, VOCABULARY, ReadColumns, Tally, Wanted, read_columns, solve_cells
 
 if TYPE_CHECKING:
@@ -163,15 +172,67 @@ def _ndjson(piece: Piece, results: "pl.DataFrame") -> memoryview:
 
 
 def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
-    """Solve Parquet, whose columns keep their types."""
+    """Solve Parquet, whose columns keep their types. Raises Unreadable, also for a file that is damaged.
+
+    A thread writes while this one waits, as polars would not hear Ctrl-C.
+    """
+    import polars as pl
+    from polars.io.plugins import register_io_source
+
     # Parquet is not read from front to back, nor written so: a stream goes through memory.
     if is_stream(job.source) or is_packed(job.source):
         source = BytesIO(b"".join(blocks_of(source)))
-    whole = BytesIO()
+    whole, stopped = BytesIO(), Event()
     file = whole if isinstance(target, Stdout) or is_stream(job.target) else target
-    columns = solve_parquet(source, file, job.wanted, tally)
+    with _reading():
+        table = pl.scan_parquet(source)
+        schema = table.collect_schema()
+        total = int(table.select(pl.len()).collect().item())
+        columns = read_columns(schema.names(), job.wanted)
+        head = with_results(pl.DataFrame(schema=schema), columns, job.wanted)
+        parts = table.collect_batches(maintain_order=True)
+        with progress(parts, total, pl.DataFrame.__len__, pl.DataFrame.__len__) as watched:
+
+            def solved(*_: object) -> "Iterator[pl.DataFrame]":
+                for part in takewhile(lambda _: not stopped.is_set(), watched):
+                    yield with_results(part, columns, job.wanted, tally)
+
+            table = register_io_source(solved, schema=head.schema)
+            with ThreadPoolExecutor(1) as writer:
+                try:
+                    writer.submit(table.sink_parquet, file, compression="snappy").result()
+                finally:
+                    stopped.set()
+    if tally.rows != total:
+        raise Unreadable(f"it is damaged: it should have {counted(total, 'row')}")
     target.write(whole.getbuffer())
     return _remarks(columns, job.wanted)
+
+
+@contextmanager
+def _reading() -> Iterator[None]:
+    """Raise Unreadable for any error that polars makes of damaged Parquet.
+
+    Its threads that panic write to the descriptor of stderr. So this leads nowhere meanwhile, while
+    `sys.stderr` leads where it did.
+    """
+    import polars as pl
+
+    with ExitStack() as stack:
+        with suppress(OSError):  # stderr may be closed
+            kept = os.dup(2)
+            stack.callback(os.close, kept)
+            stack.callback(os.dup2, kept, 2)
+            if isinstance(sys.stderr, TextIOWrapper) and sys.stderr is sys.__stderr__:
+                encoding = sys.stderr.encoding
+                visible = stack.enter_context(open(kept, "w", encoding=encoding, closefd=False))
+                stack.enter_context(redirect_stderr(visible))
+            os.dup2(stack.enter_context(open(os.devnull, "w")).fileno(), 2)
+        try:
+            yield
+        except (pl.exceptions.PolarsError, pl.exceptions.PanicException, MemoryError) as error:
+            why = str(error).splitlines() or ["it does not fit into memory"]
+            raise Unreadable(f"it is not Parquet that polars can read: {why[0]}") from None
 
 
 def _remarks(columns: ReadColumns, wanted: Wanted, table: Csv | None = None) -> list[str]:
