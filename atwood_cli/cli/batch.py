@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-import typer
-
 from ..explain.conditions import read_condition
 from ..numbers.text import counted
 from ..output.files import STDOUT
@@ -14,16 +12,28 @@ from ..reading.names import read_names
 from ..solver.quantities import STANDARD
 from ..solver.scene import INPUTS, SceneError
 from ..tables.sources import FORMATS, check_format, read_format
-from .options import COULD_NOT, DONE, SCENE, Columns, Expect, Force, Labels, SheetName, option, with_options
+from .options import (
+    COULD_NOT,
+    DONE,
+    SCENE,
+    Columns,
+    Expect,
+    Force,
+    Labels,
+    Named,
+    SheetName,
+    argument,
+    option,
+    with_options,
+)
 
 Table = Annotated[
     str,
-    typer.Argument(
-        metavar="IN",
-        rich_help_panel="Files",
-        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz;"
-        " .xlsx, .ods; - for stdin; a pipe is read as CSV.",
-        show_default=False,
+    argument(
+        "Files",
+        "IN",
+        "Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz; .xlsx, .ods;"
+        " - for stdin; a pipe is read as CSV.",
     ),
 ]
 OutTable = Annotated[
@@ -73,15 +83,7 @@ def batch(
             help="Format of IN, if not that of its suffix.",
         ),
     ] = None,
-    column: Annotated[
-        list[str] | None,
-        option(
-            "Files",
-            "--column",
-            metavar="NAME=HEADING",
-            help="What a column holds, if its heading does not say, as R='radius in m'; repeatable.",
-        ),
-    ] = None,
+    column: Named = None,
     label: Labels = None,
     sheet: SheetName = None,
     only: Columns = None,

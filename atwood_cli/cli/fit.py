@@ -2,8 +2,6 @@
 
 from typing import Annotated
 
-import typer
-
 from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..output.text import Destination, Picture, say, show
 from ..reading.names import divided, read_names
@@ -15,22 +13,16 @@ from .options import (
     FIGURE,
     OUTPUT,
     Labels,
+    Named,
     SheetName,
+    argument,
     check_figure,
     option,
     scene_option,
     with_options,
 )
 
-Table = Annotated[
-    str,
-    typer.Argument(
-        metavar="RUNS",
-        rich_help_panel="Files",
-        help="Table of runs: CSV, .tsv, .xlsx, .ods; - for stdin.",
-        show_default=False,
-    ),
-]
+Table = Annotated[str, argument("Files", "RUNS", "Table of runs: CSV, .tsv, .xlsx, .ods; - for stdin.")]
 Find = Annotated[
     list[str] | None,
     option(
@@ -48,12 +40,6 @@ Only = Annotated[
     list[str] | None,
     option(
         "Output", metavar="NAME", words=lambda: RESULTS, help="Print only this result; repeatable, or a,b."
-    ),
-]
-Column = Annotated[
-    list[str] | None,
-    option(
-        "Files", "--column", metavar="NAME=HEADING", help="Say what a column is, as t='Zeit (s)'; repeatable."
     ),
 ]
 
@@ -97,7 +83,7 @@ def fit(
     R: Annotated[str | None, scene_option("R", remark="; adds moment_of_inertia")] = None,
     axle: Annotated[str | None, scene_option("axle", remark="")] = None,
     g: Annotated[str | None, scene_option("g")] = None,
-    column: Column = None,
+    column: Named = None,
     label: Labels = None,
     sheet: SheetName = None,
     only: Only = None,

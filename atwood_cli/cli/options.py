@@ -56,6 +56,11 @@ def option(group: str, *flags: str, words: Callable[[], Mapping[str, str]] | Non
     return typer.Option(*flags, rich_help_panel=group, show_default=False, autocompletion=completion, **more)
 
 
+def argument(group: str, metavar: str, text: str) -> Any:
+    """Return an argument, with the ``group`` in which help shows it."""
+    return typer.Argument(metavar=metavar, rich_help_panel=group, help=text, show_default=False)
+
+
 def scene_option(name: str, remark: str | None = None) -> Any:
     """Return the option for an input of a scene or a motion, with a remark that a command may replace."""
     parameter = parameter_of(name)
@@ -181,6 +186,15 @@ Expect = Annotated[
 ]
 SheetName = Annotated[
     str | None, option("Files", "--sheet", metavar="NAME", help="Sheet of a workbook, if not the first.")
+]
+Named = Annotated[
+    list[str] | None,
+    option(
+        "Files",
+        "--column",
+        metavar="NAME=HEADING",
+        help="Say what a column is, as m1='Mass 1 (g)'; repeatable.",
+    ),
 ]
 Labels = Annotated[
     list[str] | None,

@@ -4,12 +4,10 @@ import sys
 from shutil import get_terminal_size
 from typing import Annotated
 
-import typer
-
 from ..output.text import VERSION, Destination, Report, say, show
 from ..reading.names import read_names
 from ..solver.quantities import QUANTITIES, REGIMES
-from .options import DONE, OUTPUT, with_options
+from .options import DONE, OUTPUT, argument, with_options
 
 HELP = """List the quantities: symbols, units, meanings, equations.
 
@@ -27,12 +25,7 @@ ON_FRICTION = (
 )
 
 
-Names = Annotated[
-    list[str] | None,
-    typer.Argument(
-        metavar="[NAMES]", rich_help_panel="Output", help="Only these quantities.", show_default=False
-    ),
-]
+Names = Annotated[list[str] | None, argument("Output", "[NAMES]", "Only these quantities.")]
 
 
 @with_options(OUTPUT)
