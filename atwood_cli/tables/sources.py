@@ -15,6 +15,7 @@ from time import monotonic
 from typing import IO, Any
 
 from ..numbers.text import LONGEST_NAME, in_quotes, shortened
+from ..reading.names import read_name
 from ..solver.scene import SceneError
 
 FORMATS = ("csv", "tsv", "ndjson", "parquet")
@@ -55,9 +56,7 @@ def read_format(given: str | None, path: str) -> str:
     A packed file has two suffixes, of which the first counts. Raises SceneError.
     """
     if given is not None:
-        if given not in FORMATS:
-            raise SceneError("from", given, f"is not a format; there are {', '.join(FORMATS)}")
-        return given
+        return read_name("from", given, FORMATS, "format", {})
     name = Path(path).with_suffix("") if is_packed(path) else Path(path)
     if suffix := SUFFIXES.get(name.suffix.lower()):
         return suffix

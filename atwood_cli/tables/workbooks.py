@@ -215,15 +215,14 @@ def _cells_of_ods(table: Element) -> Cells:
 def _text_of_ods(cell: Element) -> str:
     """Return what a cell holds, without its comments."""
     shown = "\n".join("".join(line.itertext()) for line in cell.iterfind("{*}p"))
-    match next((value for key, value in cell.items() if key.endswith("office:1.0}value-type")), ""):
+    match _get(cell, "value-type"):
         case "float" | "currency":
             unit = re.search(r" ?[^\W\d_][^\d]*$", shown)
             return _number(_get(cell, "value")) + (unit[0] if unit else "")
         case "percentage":
             return _number(_get(cell, "value"), "%")
         case "time":
-            clock = re.fullmatch(r"PT(\d+)H(\d+)M([\d.,]+)S", _get(cell, "time-value"))
-            return ":".join(clock.groups()) if clock else shown
+            return ":".join(re.findall(r"[\d.,]+", _get(cell, "time-value")))  # PT00H00M03.99S
         case "date":
             return f"a date, {_get(cell, 'date-value')}"
     formula = _get(cell, "formula")
