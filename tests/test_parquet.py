@@ -128,7 +128,7 @@ def test_a_frame_of_pandas_keeps_its_index_and_its_columns() -> None:
     [
         *((table, f"the table is of type {type(table).__name__}; give a data frame of polars or pandas") for table in ([1], pl.Series([1]), TABLE.to_dict())),
         (TABLE.with_columns(m2=True), "cannot read the table: column m2 holds Boolean, not numbers"),
-        (TABLE.drop("m2"), "cannot read the table: column m2 is missing; there are 'id', 'm1 (g)', 'M', 'x'"),
+        (TABLE.drop("m2"), "cannot read the table: it lacks m2; there are 'id', 'm1 (g)', 'M', 'x'"),
         (TABLE.rename({"M": "M (u)"}), f"cannot read the table: column 'M (u)' has the unit 'u'; it takes {', '.join([*UNITS['mass'], *UNITS['force']])}; rename it"),
         (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' may mean R (radius of the pulley); rename it"),
         (TABLE.rename({"id": "error"}), "cannot read the table: column 'error' has the name of a result; rename it"),

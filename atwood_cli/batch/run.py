@@ -29,7 +29,7 @@ from ..output.page import progress
 from ..output.text import markdown_table
 from ..solver.quantities import QUANTITIES
 from ..tables.headings import ABOVE, Heading, decimal_commas_in, listed, read_as, recognised
-from ..tables.records import BYTE_ORDER_MARK, Csv, Piece, read_ndjson
+from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import Unreadable, blocks_of, cannot_read, is_packed, is_stream
 from ..tables.workbooks import opened_table
 from .frames import with_results
@@ -93,20 +93,21 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
     columns = read_columns(table.columns, wanted)
     pieces = table.pieces(columns.headings)
     first = [*islice(pieces, 1)]
-    for piece in first:
-        cells = piece.cells
-        comma = decimal_commas_in(cells.iter_rows(), range(cells.width), table.separator)
-        columns = columns._replace(comma=comma)
+    in_first = ((piece.cells.iter_rows(), range(piece.cells.width)) for piece in first)
+    columns = columns._replace(comma=any(decimal_commas_in(*cells, table.separator) for cells in in_first))
     units = _units(wanted) if job.markdown else {}
     names = [f"{x} ({units[x]})" if x in units else x for x in wanted.names]
-    header = f"{table.separator.join([table.header, *names, ERROR])}{table.line_end}".encode()
-    target.write(_markdown(header, table, True) if job.markdown else header)
+    rows = BytesIO() if job.markdown else target
+    rows.write(f"{table.separator.join([table.header, *names, ERROR])}{table.line_end}".encode())
     with _watched(chain(first, pieces), job, source) as watched:
         for piece in watched:
             results = solve_cells(piece.cells, columns, wanted, tally, piece.errors)
-            rows = _csv(piece, results, table, columns.comma, wanted.digits)
-            target.write(_markdown(rows, table, False) if job.markdown else rows)
-            target.flush()
+            rows.write(_csv(piece, results, table, columns.comma, wanted.digits))
+            rows.flush()
+    if isinstance(rows, BytesIO):
+        text = StringIO(rows.getvalue().decode("utf-8-sig"), newline="")
+        lines = markdown_table(csv.reader(text, delimiter=table.separator))
+        target.write("".join(f"{line}\n" for line in lines).encode())
     return _remarks(columns, wanted, table)
 
 
@@ -131,13 +132,6 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool, digits:
         decimal_comma=comma,
     )
     return buffer.getbuffer()
-
-
-def _markdown(rows: bytes | memoryview, table: Csv, is_header: bool) -> bytes:
-    """Return rows of CSV as those of a table in Markdown, behind a line if it is the header."""
-    text = StringIO(str(rows, "utf-8").removeprefix(BYTE_ORDER_MARK), newline="")
-    lines = markdown_table(chain([[]] * (not is_header), csv.reader(text, delimiter=table.separator)))
-    return "".join(f"{line}\n" for line in islice(lines, 2 * (not is_header), None)).encode()
 
 
 def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:

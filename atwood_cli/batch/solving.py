@@ -107,10 +107,8 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
     inputs |= {name for name, text in wanted.given.items() if read_value(name, text) is not None}
     missing = [mass for mass in MASSES if mass not in inputs]
     if missing and whole:
-        lacking = "columns m1 and m2 are" if missing[1:] else f"column {missing[0]} is"
-        way = " ".join(f"--column {mass}=HEADING" for mass in missing)
-        way += f", or --{missing[0]} for all rows"
-        raise Unreadable(f"{lacking} missing; there are {listed(columns)}", f"; give {way}")
+        way = f"; give {' '.join(f'--column {x}=HEADING' for x in missing)}, or --{missing[0]} for all rows"
+        raise Unreadable(f"it lacks {' and '.join(missing)}; there are {listed(columns)}", way)
     if not (headings or missing):
         raise Unreadable(f"no column holds an input; there are {listed(columns)}")
     read = {*labels, *(heading.column for heading in headings)}
