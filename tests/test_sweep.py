@@ -40,7 +40,8 @@ decimals = st.decimals(min_value=0, max_value=10**6, allow_nan=False, places=6)
 def test_decimal_steps_are_exact(start: Decimal, step: Decimal, count: int, down: bool) -> None:
     expected = [Fraction(start) + i * Fraction(step) for i in range(count)][:: -1 if down else 1]
     ends = (str(Decimal(q.numerator) / Decimal(q.denominator)).lower() for q in (expected[0], expected[-1]))
-    texts = [point.text for point in read_range("M", f"{':'.join(ends)}:{count}").points]
+    along = read_range("M", f"{':'.join(ends)}:{count}")
+    texts = [*map(along.cell, along.points)]
     assert list(map(Fraction, texts)) == expected
     assert max(map(len, texts)) < 20
 
@@ -54,7 +55,8 @@ def test_points_a_person_can_read_lie_where_they_should(
 ) -> None:
     """Ends are hit; others are rounded to the digits shown, or as many more as leave them within 1/200 of a step."""
     assume(start != stop)
-    texts = [point.text for point in read_range("M", f"{start}:{stop}:{count}{':log' * log}", digits).points]
+    along = read_range("M", f"{start}:{stop}:{count}{':log' * log}", digits)
+    texts = [*map(along.cell, along.points)]
     values = [*map(Fraction, texts)]
     assert (values[0], values[-1], len(values)) == (Fraction(start), Fraction(stop), count)
     assert all(a != b and (a < b) == (start < stop) for a, b in pairwise(values))

@@ -27,6 +27,7 @@ m + b. These are asked. Between them the sign of m2 - m1, and whether h - l <= b
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
 from math import inf
@@ -37,7 +38,7 @@ from ..numbers.digits import SHOWN_DIGITS, to_digits
 from ..reading.units import MAX_MAGNITUDE
 from ..solver.decisions import Decisions
 from ..solver.scene import MASSES, Scene
-from .ranges import LOCKED, Point, Range, decimal_point, exact_point
+from .ranges import LOCKED, Range
 
 NEIGHBOUR_SHARE = Fraction(1, 10**60)
 """A value's neighbour, at which it is decided whether the regime changes there, is off by this part of it."""
@@ -46,12 +47,12 @@ LEAST_INPUT = Fraction(1, 10**MAX_MAGNITUDE)
 
 
 class Change(NamedTuple):
-    """A change along a range: ``at`` is the value itself, or the decimal nearest to it.
+    """A change along a range, in its unit: ``at`` is the value itself, or the decimal nearest to it.
 
     ``holds_at`` and ``differs_at`` are the nearest values before and after the change.
     """
 
-    at: Point
+    at: Fraction | Decimal
     before: Any
     after: Any
     holds_at: Fraction
@@ -71,17 +72,15 @@ def changes(
     """
 
     def state(value: Fraction) -> Any:
-        return what(Decisions(scene.with_number(along.name, value)))
+        return what(Decisions(along.at(value, scene)))
 
     start, stop = along.ends
-    asked = [start, *(value for value in _turns(scene, along.name) if start < value < stop), stop]
+    asked = [start, *(value for value in _turns(scene, along) if start < value < stop), stop]
     states = {value: state(value) for value in asked if value not in known} | dict(known)
     for holds_at, other in pairwise(sorted(states)):
         while states[holds_at] != states[other]:
             before = states[holds_at]
-            place, holds_at, differs_at = _between(
-                state, before, holds_at, other, digits or SHOWN_DIGITS, along.suffix
-            )
+            place, holds_at, differs_at = _between(state, before, holds_at, other, digits or SHOWN_DIGITS)
             states.setdefault(differs_at, state(differs_at))
             yield Change(place, before, states[differs_at], holds_at, differs_at)
             holds_at = differs_at
@@ -92,10 +91,10 @@ def say_regimes(along: Range, in_order: Sequence[Change], scene: Scene) -> str:
     parts = []
     for before, change in zip([None, *in_order], in_order, strict=False):
         place = along.in_units(change.at)
-        begins = before.at.exact if before else along.ends[0]
-        where = "at" if change.at.exact == begins else "up to"
+        begins = before.at if before else along.ends[0]
+        where = "at" if change.at == begins else "up to"
         parts.append(f"{change.before} {where} {place if before else f'{along.name} = {place}'}")
-    first_regime = Decisions(scene.with_number(along.name, along.ends[0])).regime
+    first_regime = Decisions(along.at(along.ends[0], scene)).regime
     last = in_order[-1].after if in_order else first_regime
     parts.append(f"{last} beyond" if in_order else last)
     locks = along.is_list and LOCKED in along.points
@@ -104,22 +103,17 @@ def say_regimes(along: Range, in_order: Sequence[Change], scene: Scene) -> str:
     return ", ".join(parts)
 
 
-def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
+def _turns(scene: Scene, along: Range) -> Iterator[Fraction]:
     """Yield the values of an input at which the tension ratio turns from rising to falling, or back."""
-    if name in MASSES:
-        other = scene.m1 if name == "m2" else scene.m2
-        yield scene.in_terms_of(name, other)
-        yield scene.in_terms_of(name, other + Decisions(scene).axle_mass)
+    if along.name in MASSES:
+        other = scene.m1 if along.name == "m2" else scene.m2
+        for mass in (other, other + Decisions(scene).axle_mass):
+            yield scene.in_terms_of(along.name, mass) / along.factor
 
 
 def _between(
-    state: Callable[[Fraction], Any],
-    before: Any,
-    holds_at: Fraction,
-    differs_at: Fraction,
-    digits: int,
-    suffix: str,
-) -> tuple[Point, Fraction, Fraction]:
+    state: Callable[[Fraction], Any], before: Any, holds_at: Fraction, differs_at: Fraction, digits: int
+) -> tuple[Fraction | Decimal, Fraction, Fraction]:
     """Return a change between two values, and the nearest values on both sides of it.
 
     The state is ``before`` at ``holds_at``, and another one at ``differs_at``.
@@ -128,9 +122,9 @@ def _between(
     above = holds_at + min(gap, holds_at * NEIGHBOUR_SHARE or LEAST_INPUT)
     below = differs_at - min(gap, differs_at * NEIGHBOUR_SHARE)
     if state(above) != before:
-        return exact_point(holds_at, suffix), holds_at, above
+        return holds_at, holds_at, above
     if state(below) == before:
-        return exact_point(differs_at, suffix), below, differs_at
+        return differs_at, below, differs_at
     start, stop = holds_at, differs_at
     while True:
         place = to_digits(digits)(differs_at)
@@ -143,4 +137,4 @@ def _between(
         value = Fraction(place) if is_settled else (holds_at + differs_at) / 2
         holds_at, differs_at = (value, differs_at) if state(value) == before else (holds_at, value)
         if is_settled:
-            return decimal_point(place, suffix), holds_at, differs_at
+            return place, holds_at, differs_at

@@ -11,8 +11,7 @@ from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
 from itertools import product
 from math import inf, prod
-from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..explain.conditions import Condition, failures_of
 from ..numbers.digits import (
@@ -22,7 +21,6 @@ from ..numbers.digits import (
     exact_decimal,
     exact_or_rounded,
     format_number,
-    strip_zeros,
     to_digits,
 )
 from ..numbers.interval import decimal_context
@@ -42,46 +40,32 @@ MOST_VALUES_SAID = 6
 
 
 class Point(NamedTuple):
-    """A value of a swept parameter, exactly (inf is a locked pulley), as it is printed, and as it was named.
+    """A value of a range, exact and in its unit (inf is a locked pulley), and the name that stood for it."""
 
-    It is printed as text if it has a unit (an angle in radians, a torque) or is no decimal (1/3, inf).
-    """
-
-    exact: Fraction | float
-    printed: Decimal | str
+    value: Fraction | float
     name: str = ""
 
-    @property
-    def text(self) -> str:
-        """Return the point as `solve` takes it."""
-        return self.printed if isinstance(self.printed, str) else format_number(self.printed)
+
+LOCKED = Point(inf)
 
 
-LOCKED = Point(inf, "inf")
-
-
-def exact_point(value: Fraction | float, suffix: str, name: str = "") -> Point:
-    """Return a number as a point: a decimal if it is one, else text."""
-    if isinstance(value, float):
-        return LOCKED
-    number, words = exact_decimal(value), as_typed(value)
-    if suffix or number is None:
-        return Point(Fraction(words), f"{words}{suffix}", name)
-    return Point(value, strip_zeros(number), name)
-
-
-def decimal_point(value: Decimal, suffix: str) -> Point:
-    """Return a decimal as a point."""
-    return Point(Fraction(value), f"{format_number(value)}{suffix}" if suffix else value)
+def as_text(value: Fraction | Decimal | float) -> str:
+    """Return a number as text; a decimal keeps its zeros."""
+    return as_typed(value) if isinstance(value, Fraction) else format_number(value)
 
 
 class Range(NamedTuple):
-    """An input that is swept over a range or a list: as typed, its points, the unit that they carry."""
+    """An input that is swept over a range or a list: as typed, its points, and their unit.
+
+    A point times ``factor`` is the number of the scene, which carries a ``suffix`` in CSV and JSON if it is
+    an angle in radians, a torque or a weight.
+    """
 
     name: str
     typed: str
     points: list[Point]
-    log: bool
+    unit: str
+    factor: Fraction
     suffix: str
 
     @property
@@ -89,43 +73,54 @@ class Range(NamedTuple):
         return "," in self.typed
 
     @property
+    def log(self) -> bool:
+        return self.typed.endswith("log")
+
+    @property
     def words(self) -> str:
         """Return the range in a sentence: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
         if not self.is_list:
             start, stop = self.points[0], self.points[-1]
-            return f"{self.name} from {self.cell(start)} to {self.in_units(stop)}"
-        values = zip(self.points, map(self.in_units, self.points), strict=True)
+            return f"{self.name} from {self.cell(start)} to {self.in_units(stop.value)}"
+        values = zip(self.points, (self.in_units(point.value) for point in self.points), strict=True)
         texts = [f"{point.name} ({value})" if point.name else value for point, value in values]
         first = texts[:-1] if len(texts) <= MOST_VALUES_SAID else [*texts[:2], "..."]
         return f"{self.name} = {', '.join(first)} or {texts[-1]}"
 
     @property
-    def unit(self) -> str:
-        return self.suffix or INPUTS[self.name].unit
-
-    @property
-    def finite(self) -> list[Point]:
-        """Return the finite points, in ascending order."""
-        return sorted((point for point in self.points if point != LOCKED), key=attrgetter("exact"))
+    def finite(self) -> list[Fraction]:
+        """Return the finite values, in ascending order."""
+        return sorted(Fraction(point.value) for point in self.points if point != LOCKED)
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
-        """Return the least and the greatest finite value, in the unit of the range."""
-        points = self.finite
-        return Fraction(points[0].exact), Fraction(points[-1].exact)
+        """Return the least and the greatest finite value."""
+        return self.finite[0], self.finite[-1]
+
+    def at(self, value: Fraction | float, scene: Scene) -> Scene:
+        """Return the scene at a value of the range."""
+        return scene.with_number(self.name, value * self.factor)
+
+    def text(self, value: Fraction | float) -> str:
+        """Return a value as `solve` takes it without a unit that is typed."""
+        return f"{as_text(value * self.factor)}{'' if value == inf else self.suffix}"
+
+    def printed(self, point: Point) -> Decimal | str:
+        """Return a point for JSON and CSV, as text if it has a unit or is no decimal (1/3, inf)."""
+        words = self.text(point.value)
+        return Decimal(words) if re.fullmatch("[-0-9.e]+", words) else words
 
     def cell(self, point: Point) -> str:
         """Return a point as a table shows it, which has the unit in a head."""
-        return point.name or point.text.removesuffix(self.suffix)
+        return point.name or as_text(point.value)
 
-    def in_units(self, point: Point) -> str:
-        """Return a point with its unit."""
-        bare = self.suffix or point == LOCKED
-        return point.text if bare else with_unit(point.text, INPUTS[self.name].unit)
+    def in_units(self, value: Fraction | Decimal | float) -> str:
+        """Return a value with its unit."""
+        return as_text(value) if value == inf else with_unit(as_text(value), self.unit)
 
     def in_words(self, point: Point) -> str:
         """Return a point in a sentence: M = 10 kg, or disk."""
-        return point.name or f"{self.name} = {self.in_units(point)}"
+        return point.name or f"{self.name} = {self.in_units(point.value)}"
 
 
 class Sweep(NamedTuple):
@@ -160,7 +155,7 @@ class Sweep(NamedTuple):
         for points in product(*(range_.points for range_ in ranges)):
             scene, place = self.scene, dict[str, Point]()
             for range_, point in zip(ranges, points, strict=True):
-                place[range_.name], scene = point, scene.with_number(range_.name, point.exact)
+                place[range_.name], scene = point, range_.at(point.value, scene)
             yield scene, place
 
     def in_words(self, place: Mapping[str, Point]) -> str:
@@ -198,8 +193,8 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
         for name, words in typed.items()
     ]
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
-    corners = ([x.finite[0], x.finite[-1], max(x.points, key=attrgetter("exact"))] for x in ranges)
-    scene, *_ = (scene_at(fixed, ranges, corner) for corner in product(*corners))
+    corners = ([(x, value) for value in (*x.ends, max(x.points).value)] for x in ranges)
+    scene, *_ = (scene_at(fixed, corner) for corner in product(*corners))
     if "g" in typed and (weights := [x for x, given in scene.terms if given.terms.by == "g"]):
         rule = (
             f"cannot be swept beside {weights[0]}, a weight, whose mass would change; give {weights[0]} in kg"
@@ -217,64 +212,63 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
         raise SceneError(name, typed, f"is not a range; write {FORM}")
-    if any(word.strip().lower() in (LOCKED.text, *INPUTS[name].names) for word in words[:2]):
+    ends = _read_points(name, typed, words[:2])
+    if any(end == LOCKED or end.name for end in ends.points):
         raise SceneError(name, typed, "must run between finite numbers, not to or from inf or a name")
-    (start, stop), suffix = _read_numbers(name, typed, words[:2])
-    log = len(words) == 4
+    start, stop = (Fraction(end.value) for end in ends.points)
     if start == stop:
         raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
-    if log and not (start > 0 and stop > 0):
+    if ends.log and not (start > 0 and stop > 0):
         raise SceneError(name, typed, "has no equal ratios from or to 0; both ends must be above 0")
     try:
         last = read_whole(name, words[2], 2, MAX_POINTS) - 1
     except SceneError as error:
         rule = f"has the count {in_quotes(words[2])}, which {error.rule}, as in 0:60:4 or 10g:1kg:5:log"
         raise SceneError(name, typed, rule) from None
-    kept = _digits_kept(start, stop, last, log, digits)
+    kept = _digits_kept(start, stop, last, ends.log, digits)
     if kept > MAX_DIGITS:
         rule = f"has points closer together than {MAX_DIGITS} digits can tell"
         raise SceneError(name, typed, f"{rule}; take fewer points, or ends further apart")
     round_ = to_digits(kept)
-    first, *inner, end = steps(start, stop, last, log, kept + MORE_DIGITS)
+    first, *inner, end = steps(start, stop, last, ends.log, kept + MORE_DIGITS)
     points = [exact_or_rounded(first, round_), *map(round_, inner), exact_or_rounded(end, round_)]
-    return Range(name, typed, [decimal_point(strip_zeros(x), suffix) for x in points], log, suffix)
+    return ends._replace(points=[Point(Fraction(point)) for point in points])
 
 
 def read_list(name: str, typed: str) -> Range:
     """Read a list of values of an input. Raises SceneError."""
-    words = [word.strip() for word in typed.split(",")]
-    if ":" in typed:
-        raise SceneError(
-            name, typed, "has a comma in a range; numbers take a point, and a list takes no colon"
-        )
-    if name not in ("M", "wrap") and re.fullmatch(r"0,\d+", typed.strip()):
-        decimal, spaced = typed.strip().replace(",", "."), ", ".join(words)
-        raise SceneError(name, typed, f"can mean {decimal} or a list; write {decimal}, or '{spaced}'")
-    if odd := [word for word in words[1:] if re.match(r"0\d", word)]:
-        rule = "numbers take no comma, and values of a list no 0 before them"
-        raise SceneError(name, typed, f"has {in_quotes(odd[0])} in it; {rule}")
-    values, suffix = _read_numbers(name, typed, words)
-    if min(values) == inf:
+    if re.search(r":|,0\d", typed) or (name not in ("M", "wrap") and re.fullmatch(r"0,\d+", typed)):
+        rule = "may have a decimal comma; write a point, or a blank behind the comma of a list"
+        raise SceneError(name, typed, rule)
+    values = _read_points(name, typed, [word.strip() for word in typed.split(",")])
+    if not values.finite:
         raise SceneError(name, typed, "has no finite value; give one")
-    named = [word.lower() if word.lower() in INPUTS[name].names else "" for word in words]
-    points = [exact_point(value, suffix, word) for value, word in zip(values, named, strict=True)]
-    return Range(name, typed, points, False, suffix)
+    return values
 
 
-def _read_numbers(name: str, typed: str, words: Sequence[str]) -> tuple[list[Any], str]:
-    """Read the numbers of a range or a list, and the unit that their points carry. Raises SceneError."""
+def _read_points(name: str, typed: str, words: Sequence[str]) -> Range:
+    """Read the numbers or names of a range or a list, as its points. Raises SceneError.
+
+    They are in the unit that they all have, if that leaves them decimals in the SI.
+    """
     values = [read_value(name, word) for word in words]
     numbers = [getattr(value, "number", value) for value in values]
-    named = (LOCKED.text, *INPUTS[name].names)
+    names = [word.lower() if word.lower() in INPUTS[name].names else "" for word in words]
     # A name is typed neither with a unit nor without, and 0 is 0 in any.
-    plain = [i for i, word in enumerate(words) if numbers[i] and word.strip().lower() not in named]
-    if len({bool(read_number(words[i], INPUTS[name].dimensions or None).unit) for i in plain}) > 1:
-        # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
-        raise SceneError(name, typed, "has a unit at some numbers only; write it at each")
-    suffixes = {getattr(values[i], "unit", "").replace("°", "") for i in plain}  # "" is the usual unit
-    if len(suffixes) > 1:
-        raise SceneError(name, typed, "has units of two kinds; write all numbers in the same unit")
-    return numbers, next(iter(suffixes), "")
+    plain = [i for i, number in enumerate(numbers) if number not in (0, inf) and not names[i]]
+    dimensions = INPUTS[name].dimensions or None
+    # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
+    kinds = {(getattr(values[i], "unit", ""), not read_number(words[i], dimensions).unit) for i in plain}
+    if len(kinds) > 1:
+        raise SceneError(name, typed, "mixes units; write the same unit at each number")
+    suffix = next((unit.replace("°", "") for unit, _ in kinds), "")
+    units = {(getattr(numbers[i], "factor", 1), getattr(numbers[i], "in_unit", "")) for i in plain}
+    factor, unit = units.pop() if len(units) == 1 else (1, "")
+    if factor == 1 or None in (exact_decimal(x) for x in (*numbers, factor) if x != inf):
+        factor, unit = 1, suffix or INPUTS[name].unit
+    exact = (number if number == inf else Fraction(as_typed(number / factor)) for number in numbers)
+    points = [Point(value, word) for value, word in zip(exact, names, strict=True)]
+    return Range(name, typed, points, unit.replace("2", "²"), Fraction(factor), suffix)
 
 
 def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: int | None) -> int:
@@ -310,16 +304,15 @@ def power(ratio: Fraction, share: Fraction, digits: int = DOUBLE_DIGITS) -> Frac
     return Fraction(context.power(number, exponent))
 
 
-def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequence[Point]) -> Scene:
+def scene_at(fixed: Mapping[str, Input], place: Sequence[tuple[Range, Fraction | float]]) -> Scene:
     """Return the scene of fixed inputs and those at a point, read as by `solve`. Raises SceneError."""
-    place = list(zip(ranges, points, strict=True))
-    here = {range_.name: read_exactly(range_.name, point.text) for range_, point in place}
+    here = {range_.name: read_exactly(range_.name, range_.text(value)) for range_, value in place}
     try:
         return Scene.of({**fixed, **here})
     except SceneError as error:
         if error.parameter in here or error.value is None:
             raise
-        where = ", ".join(f"{range_.name} = {range_.in_units(point)}" for range_, point in place)
+        where = ", ".join(range_.in_words(Point(value)) for range_, value in place)
         raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
 
 

@@ -64,13 +64,13 @@ def _drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
 def _solve(along: Range, scene: Scene, digits: int | None) -> tuple[list[Change], dict[float, Answers]]:
     """Return the changes along a range, and the answers at its values; those of a list are by place."""
     if along.is_list:
-        scenes = (scene.with_number(along.name, point.exact) for point in along.points)
+        scenes = (along.at(point.value, scene) for point in along.points)
         return [], {float(place): Answers(at_value) for place, at_value in enumerate(scenes)}
     corners = attrgetter("regime", "sign", "axle_holds")  # where one of these changes
     in_order = list(changes(scene, along, digits, what=corners))
     values = [*steps(*along.ends, CURVE_STEPS, along.log)]
     values += [x for change in in_order for x in (change.holds_at, change.differs_at)]
-    return in_order, {float(x): Answers(scene.with_number(along.name, x)) for x in sorted(values)}
+    return in_order, {float(x): Answers(along.at(x, scene)) for x in sorted(values)}
 
 
 def panels_of(sweep: Sweep, names: Sequence[str], digits: int | None = None) -> list[list[Curve]]:
@@ -114,7 +114,7 @@ def _curve(
             )  # there it holds
             height = next((y for x in places if not isnan(y := heights[float(x)])), nan)
             words = f"{BEGINS[change.after[0]]} {along.in_units(change.at)}"
-            marks.append((float(change.at.exact), height, words))
+            marks.append((float(change.at), height, words))
     return Curve(name, point, [*heights], [*heights.values()], marks)
 
 

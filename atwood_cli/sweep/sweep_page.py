@@ -38,7 +38,7 @@ class SweepPage:
         self.assumed: list[str] = []
         greatest = sweep.scene
         for range_ in sweep.ranges:
-            greatest = greatest.with_number(range_.name, range_.ends[1])
+            greatest = range_.at(range_.ends[1], greatest)
         self.remarks = [*map(unmarked, on_units(Answers(greatest).to_six_digits))]
         self.done = 0
         """The rows that are solved and, as JSON or CSV, written."""
@@ -77,7 +77,7 @@ class SweepPage:
     def records(self) -> Iterator[dict[str, object]]:
         # Without the bar, into which rows on a terminal would run.
         for row in self._rows(self.names, self.digits, watch=not sys.stdout.isatty()):
-            points = {name: point.printed for name, point in row.at.items()}
+            points = {range_.name: range_.printed(row.at[range_.name]) for range_ in self.sweep.ranges}
             yield points | {name: row.values[name] for name in self.names}
 
     def page(self, table: bool = True) -> None:
@@ -130,7 +130,7 @@ def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[
     if sweep.total <= MAX_CURVES * len(along.points):
         for scene, place in sweep.scenes(sweep.others):
             here = [row for row in rows if place.items() <= row.at.items() and row.at[along.name] != LOCKED]
-            known = {Fraction(row.at[along.name].exact): row.regime for row in here}
+            known = {Fraction(row.at[along.name].value): row.regime for row in here}
             sentences[sweep.in_words(place)] = say_regimes(
                 along, list(changes(scene, along, digits, known)), scene
             )
