@@ -87,8 +87,8 @@ def check_picture(picture: Picture) -> None:
 def page(picture: Picture, above: Sequence[str], below: str = "", panels: int = 1) -> Iterator["Figure"]:
     """Yield a figure with room for so many panels, below each other, save it and say so. Raises OSError.
 
-    The sentences ``above`` are written unless it is bare. In the file, the first of them is the title, and
-    all others, with those ``below``, are the description. With symbols alone, there is none of them.
+    The sentences ``above`` are written unless it is bare, and left out of one with symbols alone. In the file,
+    the first of them is the title, and all others, with those ``below``, are the description.
     """
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -96,7 +96,8 @@ def page(picture: Picture, above: Sequence[str], below: str = "", panels: int = 
 
     path = Path(picture.file)
     kind = path.suffix[1:].lower()
-    title, *others = ("", "") if picture.symbols else map(typeset, [*above, below])
+    above = [] if picture.symbols else above
+    title, *others = map(typeset, [*above, below] if above else ["", below])
     description = " ".join(others).strip()
     metadata = PICTURE_FORMATS[kind] | {
         "Title": title,
@@ -108,8 +109,8 @@ def page(picture: Picture, above: Sequence[str], below: str = "", panels: int = 
         with warnings.catch_warnings(action="ignore"), rc_context({**rcParamsDefault, **STYLE}):
             figure = Figure((WIDTH, HEIGHT + (panels - 1) * PANEL_HEIGHT), layout="constrained")
             FigureCanvasAgg(figure)  # knows the width of words
-            figure.suptitle("" if picture.bare or picture.symbols else "\n".join(map(_in_lines, above)))
-            figure.supxlabel("" if picture.symbols else _in_lines(below), fontsize=9)
+            figure.suptitle("" if picture.bare else "\n".join(map(_in_lines, above)))
+            figure.supxlabel(_in_lines(below), fontsize=9)
             yield figure
             if picture.symbols:
                 _leave_symbols(figure)

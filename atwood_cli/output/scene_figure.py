@@ -59,7 +59,7 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
     scale = LONGEST / (max(forces.values()) or 1)
     lengths = {name: max(scale * force, SHORTEST) if force else 0.0 for name, force in forces.items()}
-    below = [*_caption(answers, kind, wrap)]
+    below = [] if picture.symbols else [*_caption(answers, kind, wrap)]
     arrows = _arrows_on_arc(answers, kind, radians(wrap)) if kind else None
     if arrows and (friction := abs(arrows.friction).max()):
         below.append(
