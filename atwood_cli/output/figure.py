@@ -87,8 +87,8 @@ def check_picture(picture: Picture) -> None:
 def page(picture: Picture, above: Sequence[str], below: str = "", panels: int = 1) -> Iterator["Figure"]:
     """Yield a figure with room for so many panels, below each other, save it and say so. Raises OSError.
 
-    The sentences ``above`` are written unless it is bare, and left out of one with symbols alone. In the file,
-    the first of them is the title, and all others, with those ``below``, are the description.
+    The sentences ``above`` are written unless it is bare, or has symbols alone. In the file, the first of
+    them is the title, and all others, with those ``below``, are the description.
     """
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.backends.backend_agg import FigureCanvasAgg
