@@ -77,14 +77,10 @@ class Conditions(NamedTuple):
     @property
     def values(self) -> dict[str, float]:
         """Return the quantities of a fit that are given, and the height of fall."""
-        scene, values = self.scene, {"gravity": float(self.scene.g)}
-        if scene.motion.drop is not None:
-            values["drop"] = float(scene.motion.drop)
-        if scene.axle is not None:
-            values["axle"] = float(scene.axle)
-        if scene.M is not None or scene.I is not None:
-            values["rim_mass"] = float(Decisions(scene).rim_mass or 0)
-        return values
+        scene, has_pulley = self.scene, self.scene.M is not None or self.scene.I is not None
+        values = {"gravity": scene.g, "drop": scene.motion.drop, "axle": scene.axle}
+        values |= {"rim_mass": Decisions(scene).rim_mass} if has_pulley else {}
+        return {x: float(value) for x, value in values.items() if value is not None}
 
 
 class Fitted(NamedTuple):

@@ -143,24 +143,20 @@ def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[st
 def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) -> tuple[int, str, int]:
     """Return how many headings of a table are ``known``, its separator, and the number of rows above them.
 
-    The header is the first row with two known headings, or else with most words. The separator makes most
-    known headings, or else most cells.
+    The header is the first row with two known headings, or else with most words, by the separator that makes
+    most known headings, or else most words.
     """
     csv.field_size_limit(LONGEST_RECORD)
-    headers: list[tuple[int, int, str, int]] = []
+    headers: list[tuple[tuple[int, int, int], int, str, int]] = []
     for separator in SEPARATORS:
-        header, most = (0, 0, separator, 0), -1
         with suppress(csv.Error):
             rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
             for above, row in enumerate(islice(rows, MOST_ABOVE + 1)):
                 count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
-                if count > 1 or words > most:
-                    header, most = (count, len(row), separator, above), words
+                headers.append(((count * (count > 1), words, len(row)), count, separator, above))
                 if count > 1:
                     break
-        headers.append(header)
-    count, _, separator, above = max(headers, key=lambda header: header[:2])
-    return count, separator, above
+    return max(headers, key=lambda header: header[0], default=(0, 0, SEPARATORS[0], 0))[1:]
 
 
 def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
