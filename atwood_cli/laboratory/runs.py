@@ -142,7 +142,9 @@ def read_runs(
     for_all = {x: (read.value + added[x], Fraction(0)) for x, read in shared.items()}
     with_units = [x for x in places if all(row[x] in EMPTY or OWN_UNIT.search(row[x]) for row in sheet.rows)]
     remarks = read_as(headings, sheet.separator, comma, [*words, *sheet.remarks], with_units)
+    left_out = [*map(str, without)]
     same, runs, unused = dict[str, Input](), RowsOfRuns(), defaultdict[str, list[int]](list)
+    u_of = defaultdict[str, dict[str, Fraction]](dict)  # by names and places
     numbers = numbers or list(range(1, len(sheet.rows) + 1))
     for number, row in zip(numbers, sheet.rows, strict=True):
         if why := _no_run(row, headings):
@@ -152,12 +154,16 @@ def read_runs(
         try:
             cells = _read_row(number, row, headings, comma, by)
         except Unreadable:
-            if str(number) not in map(str, without):
+            if str(number) not in left_out:
                 raise
             continue
         for heading, cell in cells:
-            if heading.name in MEASURED:
-                measured[f"{number}:{heading.name[0]}{heading.number}"] = cell[:2]
+            is_measured = heading.name in MEASURED
+            place = f"{number}:{f'{kind[0]}{heading.number}' if is_measured else heading.name}"
+            if (is_measured or cell.value) and {str(number), place}.isdisjoint(left_out):  # no mass is exact
+                u_of[heading.name][place] = cell.uncertainty
+            if is_measured:
+                measured[place] = cell[:2]
             elif heading.name not in CONDITIONS:
                 inputs[heading.name] = cell.value + added[heading.name], cell.uncertainty
             elif same.setdefault(heading.name, cell)[:2] != cell[:2]:
@@ -172,7 +178,11 @@ def read_runs(
     remarks += [f"{in_words(*rows)}: not used, as {reason}." for reason, rows in unused.items()]
     if not runs:
         raise Unreadable(f"it has no runs{behind_an_error(remarks)}")
-    left_out = [*map(str, without)]
+    for of_places in u_of.values():
+        lacking = [place for place, u in of_places.items() if not u]
+        if 0 < len(lacking) < len(of_places):
+            none = f"{in_words(lacking[0])} has no uncertainty, or one of 0"
+            raise Unreadable(f"{none}; give one above 0, as others have")
     if left_out:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
     result = _as_columns(kind, runs, numbers, left_out)
@@ -225,18 +235,12 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Seq
     used = [some or cells for some, cells in zip(kept, measured, strict=True)]
     cells = [cell for some in used for cell in some]
     values, u_values = np.array([number for some in used for number in some.values()], float).T
-    stated = [(cell, u) for some in kept for cell, (_, u) in some.items()]
-    _check_all_have_u([cell for cell, _ in stated], [u for _, u in stated])
     given = {x: np.array([dict(run)[x] for run in runs], float).T for x, _ in next(iter(runs))}
-    rows = [rows for rows, _ in runs.values()]
-    for x, (column, u) in given.items():
-        places = [i for i, some in enumerate(kept) if some and column[i]]  # a mass of 0 is exact
-        _check_all_have_u([f"{rows[i][0]}:{x}" for i in places], u[places])
     return Runs(
         kind,
         {x: column for x, (column, _) in given.items()},
         {x: u for x, (_, u) in given.items()},
-        rows,
+        [rows for rows, _ in runs.values()],
         np.array([not some for some in kept]),
         np.array([sum(value for value, _ in some.values()) / len(some) for some in used], float),
         values,
@@ -245,14 +249,6 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Seq
         cells,
         10.0 ** min(0, *(int(ALL_DIGITS.normalize(Decimal(str(x))).as_tuple().exponent) for x in values)),
     )
-
-
-def _check_all_have_u(places: Sequence[str], u: Sequence[Any] | Column) -> None:
-    """Raise Unreadable if some numbers have an uncertainty and others none; they stand in these places."""
-    lacking = [place for place, x in zip(places, u, strict=True) if not x]
-    if 0 < len(lacking) < len(places):
-        none = f"{in_words(lacking[0])} has no uncertainty, or one of 0"
-        raise Unreadable(f"{none}; give one above 0, as others have")
 
 
 def behind_an_error(remarks: Sequence[str]) -> str:
