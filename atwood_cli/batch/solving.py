@@ -182,11 +182,10 @@ class Tally:
         if self.assumed:
             some = f"{self.assumed} " if self.assumed < self.regimes["no-slip"] else ""
             parts[0] += f" ({some}{REGIME_ASSUMED})"
-        counts = [", ".join(parts)] if parts else []
-        counts.append(counted(self.errors, "error") if self.errors else "no errors")
+        counts = [", ".join(parts), counted(self.errors, "error") if self.errors else "no errors"]
         if self.beyond:
             counts.append(f"{counted(self.beyond, 'value')} beyond the range of doubles left empty")
-        lines = [f"{counted(self.rows, 'row')}: {'; '.join(counts)}."]
+        lines = [f"{counted(self.rows, 'row')}: {'; '.join(filter(None, counts))}."]
         explained = self.asked or STANDARD[:4]  # the regime and the motion
         reasons = [(key, count) for key, count in self.reasons.items() if key[0] in explained]
         ranked = sorted(reasons, key=lambda item: (-item[1], NAMES.index(item[0][0])))

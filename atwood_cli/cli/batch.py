@@ -37,7 +37,7 @@ Table = Annotated[
     ),
 ]
 OutTable = Annotated[
-    str,
+    str | None,
     option(
         "Files",
         "--output",
@@ -72,7 +72,7 @@ def batch(
     table: Table,
     given: Mapping[str, str | None],
     *,
-    output: OutTable = "-",
+    output: OutTable = None,
     from_: Annotated[
         str | None,
         option(
@@ -106,9 +106,8 @@ def batch(
     kind = read_format(from_, table)
     if markdown and kind not in ("csv", "tsv"):
         raise SceneError("markdown", None, "takes a table of CSV or .tsv, or a workbook")
+    output = output or STDOUT
     check_format(output, "md" if markdown else kind)
-    if force and output == STDOUT:
-        raise SceneError("force", None, "needs --output")
     conditions = [*map(read_condition, expect or [])]
     shared = {name: value for name, value in given.items() if value is not None}
     rounded_to = None if digits is None else read_whole("digits", digits, 1, 17)
