@@ -55,8 +55,8 @@ Examples:
 
 Each row is a run, with columns m1, m2, and a, or t and drop, the height of fall; an option gives what is the
 same for all, as --m1 0. Units stand in headings, as m1 (g) or "t, s", or in cells. Repeats are further rows,
-or columns t1, t2 and so on. Uncertainties are in cells, 2.05(2), or in columns headed u(t), t_err, or ±, that
-of the column before it. Columns by other names are labels, unless --column says what they are.
+or columns t1, t2 and so on. Uncertainties are in cells, 2.05(2), in headings, m1 (±1 g), or in columns headed
+u(t), t_err, or ±, that of the column before it. Other columns are labels, unless --column says what they are.
 Values of --M, --I, --axle and --g are not fitted. Results: rim_mass is the pulley's inertia as a mass at its
 rim, c = I/R², for a disk M/2; axle is the axle's friction as a force at the rim. Both are fitted, unless
 --find names others.
