@@ -228,7 +228,7 @@ def test_files_that_are_refused_with_a_sentence(read: Any, content: str, words: 
 
 CALLED = {"m1": "m1|M1|mass 1|Masse_1|Größere Masse (m)|Масса груза|Wagen (A)", "drop": "drop|h|Fallhöhe|Weg (h)|альтитуда", "t": "t|Time|Zeit (t)|temps|t mean"}  # fmt: skip
 IN_UNITS: dict[str, dict[str, Any]] = {"m1": {"g": "1e-3", "kg": 1, "mg": "1e-6", "lb": "0.45359237", "г": "1e-3"}, "drop": {"cm": "1e-2", "m": 1, "мм": "1e-3", "in": "0.0254"}, "t": {"s": 1, "ms": "1e-3", "с": 1}}  # fmt: skip
-WAYS = [" (±1 %s)", "(±0.1)%s", " ± 2%% (%s)", " (%s)", "(%s)", " [%s]", "/%s", " in %s", ", %s", ",%s", " %s", "_%s", " (%s) (left)", ""]
+WAYS = " (%s)|(%s)| [%s]|/%s| in %s|, %s|,%s| %s|_%s| (%s) (left)| (±1 %s)|(±0.1)%s| ± 2%% (%s)|".split("|")
 TRUTH = {"m1": ("0.2", "0.21"), "drop": ("0.9", "1.1"), "t": ("3.5", "2.5")}
 
 

@@ -126,7 +126,9 @@ def _check_unread(column: str, inputs: Collection[str]) -> None:
     if name in INPUTS and name not in inputs:
         if name == "M" and LIKE_SUM.search(column[:LONGEST_HEADING]):
             raise refused(column, NO_MASS)
-        raise refused(column, f"may mean {name} ({INPUTS[name].meaning}); rename it", naming(name, column))
+        raise refused(
+            column, f"may mean {name} ({INPUTS[name].meaning}); rename it", naming(Heading(0, column, name))
+        )
 
 
 def _meant(column: str) -> str:

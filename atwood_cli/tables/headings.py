@@ -297,18 +297,14 @@ def unit_factor(heading: Heading) -> Fraction:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
         return read_unit(unit, dimension)
     except Malformed as error:
-        way = naming(f"u({name})" if heading.uncertain else name, column, name) if dimension else ""
-        raise refused(column, f"{error}; rename it", way) from None
+        raise refused(column, f"{error}; rename it", naming(heading) if dimension else "") from None
 
 
-def naming(name: str, column: str, of: str = "") -> str:
-    """Return the words on an option that names a column, with a unit if its quantity has one.
-
-    The quantity is the name, unless that is of one: u(time) is ``of`` time.
-    """
-    meaning = Heading(0, column, of or name)
-    unit = parameter_of(meaning.name).unit
-    has_unit = not unit or is_unit(unit_within(column, meaning), meaning)
+def naming(heading: Heading) -> str:
+    """Return the words on an option that names a column, with a unit if its quantity has one."""
+    unit, column = parameter_of(heading.name).unit, heading.column
+    name = f"u({heading.name})" if heading.uncertain else heading.name
+    has_unit = not unit or is_unit(unit_within(column, heading), heading)
     typed = f"{name}={column}" if has_unit else f"{name} ({unit})={column}"
     return f", or give --column {_as_typed(typed)}{'' if has_unit else ', with the unit of its cells'}"
 
