@@ -34,7 +34,7 @@ MOST_ABOVE = 40
 """The most rows of titles above the headings."""
 ABOVE = "lines above the headings left out"
 SIGN = r"(?:±|\+/?-)"
-STATED = re.compile(rf"{SIGN}\s*([\d.,]*\d)\s*(%|[^\W\d_][^\s()\[\],]*)?")
+STATED = re.compile(rf",?\s*{SIGN}\s*([\d.,]*\d(?:[eE]-?\d+)?)\s*(%|[^\W\d_][^\s()\[\],]*)?")
 """An uncertainty of all cells in a heading, and the word behind it, perhaps its unit: m1 (±1 g)."""
 BRACKET = r"[(\[]([^()\[\]]*)[)\]]"
 DIVIDED = (rf"(.+?)[ /]*{BRACKET}", r"([^/]+?) ?(?:/| in ) ?(.+)")
@@ -323,7 +323,7 @@ def refused(column: str, why: str, way: str = "") -> Unreadable:
 def left_unread(*columns: str) -> str:
     """Return the options that leave columns unread, to stand behind an error."""
     labels = " ".join(f"--label {_as_typed(column)}" for column in columns)
-    return f"; {labels} leaves {'them' if columns[1:] else 'it'} unread"
+    return f"; {labels} {'leave them' if columns[1:] else 'leaves it'} unread"
 
 
 def _as_typed(word: str) -> str:
