@@ -15,6 +15,7 @@ from ..explain.messages import LIKE_RADIANS, reasons_in
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly, read_value
+from ..reading.names import divided
 from ..reading.units import symbol_of
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
@@ -98,7 +99,7 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
     if clash := [column for column in columns if column in (*wanted.names, ERROR)]:
         raise Unreadable(f"column {in_quotes(clash[0])} has the name of a result; rename it")
     known = {without_blanks(column): column for column in columns}
-    labels = {known.get(without_blanks(label), label) for label in wanted.labels}
+    labels = {known.get(x, x) for x in divided(map(without_blanks, wanted.labels), known)}
     named = {known.get(without_blanks(column), column): name for column, name in wanted.named.items()}
     headings = read_headings(columns, VOCABULARY, labels, named, whole)
     inputs = {heading.name for heading in headings}

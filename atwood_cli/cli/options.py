@@ -202,7 +202,7 @@ Labels = Annotated[
         "Files",
         "--label",
         metavar="COLUMN",
-        help="Do not read this column, though it may be meant for an input; repeatable.",
+        help="Do not read this column, though it may be meant for an input; repeatable, or a,b.",
     ),
 ]
 

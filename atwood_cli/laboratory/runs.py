@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import in_quotes, shortened
+from ..reading.names import divided
 from ..solver.scene import MASSES, Input, InTerms, SceneError
 from ..tables.headings import EMPTY, OWN_UNIT, Heading, decimal_commas_in, read_as, read_cell, refused
 from ..tables.sheets import sheet_of, units_in_cells
@@ -114,6 +115,7 @@ def read_runs(
     table of runs, SceneError for what does not fit the table.
     """
     sheet = units_in_cells(sheet_of(source, VOCABULARY, named, sheet_name))
+    labels = divided(labels, sheet.columns)
     headings = headings_of(sheet, labels, named)
     numbers = numbers_of_rows(sheet, headings)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]

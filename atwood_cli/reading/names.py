@@ -68,6 +68,6 @@ def read_name(
     raise SceneError(parameter, word, f"is not {a_kind}{hint or nearest(word, known) or known_names}")
 
 
-def divided(typed: Iterable[str]) -> list[str]:
-    """Return the words of a repeatable option, each of which may hold several with commas between."""
-    return [word.strip() for words in typed for word in words.split(",")]
+def divided(typed: Iterable[str], whole: Collection[str] = ()) -> list[str]:
+    """Return the words of a repeatable option, which may hold several with commas, but not ``whole`` ones."""
+    return [word.strip() for words in typed for word in ([words] if words in whole else words.split(","))]

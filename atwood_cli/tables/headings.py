@@ -44,7 +44,7 @@ LIKE_UNIT = re.compile(r"\w ?/ ?\w|\^|[²³]|s-[12]$")
 MASS_WORDS = "M m mass Mass masse Masse masa Masa massa Massa масса Масса".split()
 MASS_NAMES = {f"{word}{number}": f"m{number}" for word in MASS_WORDS for number in (1, 2)}
 """The masses by names that can mean nothing else, without blanks."""
-LIKE_SUM = re.compile(r"total|gesamt|\bsum|somme|diff|dif[ei]r|^\W*[Σ∑Δ]|\bm[\w ]*[-–−+] ?m", re.IGNORECASE)
+LIKE_SUM = re.compile(r"(?i)total|gesamt|\bsum|somme|dif(f|[ei]r)|^\W*([Σ∑Δ∆]|delta|dm\b)|\bm[\w ]*[-–−+] ?m")
 """The headings of sums and of differences."""
 NO_MASS = "could be a sum or a difference of masses, which is not read"
 UNCERTAINTY = re.compile(r"u ?\((.+)\)|(.+?)[ _]err")
@@ -328,6 +328,7 @@ def left_unread(*columns: str) -> str:
 
 def _as_typed(word: str) -> str:
     """Return a word with a heading as a shell takes it, or with escapes."""
+    word = without_blanks(word)
     return quote(word) if word.isprintable() and len(word) <= LONGEST_HEADING else in_quotes(word)
 
 
