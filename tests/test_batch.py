@@ -7,6 +7,7 @@ import json
 import re
 import subprocess
 import sys
+from contextlib import redirect_stdout
 from fractions import Fraction
 from functools import partial
 from itertools import count
@@ -20,6 +21,7 @@ import pytest
 
 from atwood_cli import SceneError, solve, solve_table
 from atwood_cli.batch import solving
+from atwood_cli.cli import run
 from atwood_cli.reading.units import UNITS
 from atwood_cli.tables import sources
 
@@ -225,6 +227,16 @@ def test_a_number_beyond_the_doubles_is_taken_as_solve_takes_it() -> None:
 
 
 # Usage and files
+
+
+def test_results_are_not_added_to_the_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """They would be read as scenes, and their results, too, without end."""
+    scenes = tmp_path / "a.csv"
+    scenes.write_text("m1,m2\n1,3\n")
+    with scenes.open("a") as out, redirect_stdout(out):
+        assert run(["batch", str(scenes)]) == 2
+    refused = "atwood: --output '-' is the input, which would grow without end; name another file\n"
+    assert (capsys.readouterr().err, scenes.read_text()) == (refused, "m1,m2\n1,3\n")
 
 
 def test_polars_that_is_missing_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -24,7 +24,7 @@ from atwood_cli.laboratory.runs import Runs, read_runs
 from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.quantities import NAMES
 from atwood_cli.solver.scene import INPUTS
-from atwood_cli.tables import headings, sheets, sources
+from atwood_cli.tables import cells, headings, sheets, sources
 from atwood_cli.tables.sources import Unreadable
 
 from .conftest import many
@@ -113,7 +113,7 @@ GRAMS = headings.Heading(0, "m1 (g)", "m1", unit="g", factor=Fraction(1, 1000))
 )
 def test_cells_are_read_exactly(cell: str, comma: bool, value: str, uncertainty: str) -> None:
     want = (Fraction(value), Fraction(uncertainty), cell) if value else None
-    assert headings.read_cell(GRAMS, [cell], comma) == want
+    assert cells.read_cell(GRAMS, [cell], comma) == want
 
 
 # Runs

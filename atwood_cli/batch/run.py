@@ -28,7 +28,9 @@ from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
 from ..output.text import markdown_table
 from ..solver.quantities import QUANTITIES
-from ..tables.headings import ABOVE, Heading, decimal_commas_in, listed, read_as, recognised
+from ..solver.scene import SceneError
+from ..tables.cells import decimal_commas_in
+from ..tables.headings import ABOVE, Heading, listed, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import Unreadable, blocks_of, cannot_read, is_packed, is_stream
 from ..tables.workbooks import opened_table
@@ -60,6 +62,8 @@ def run_batch(job: Job, tally: Tally) -> list[str]:
     # As polars is imported, it takes Ctrl-C: a pipe would be waited for, and an interrupt raised twice.
     signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
     how: list[str] = []
+    if job.target == STDOUT and _is_stdout(Path(job.source)):
+        raise SceneError("output", STDOUT, "is the input, which would grow without end; name another file")
     with ExitStack() as stack:
         try:
             source, how = opened_table(job.source, job.sheet, stack)
@@ -75,6 +79,13 @@ def run_batch(job: Job, tally: Tally) -> list[str]:
             why = "; ".join([f"{error}{after}", *how])
             raise cannot_read(job.source, Unreadable(why, error.options)) from None
     return [*(f"read: {remark}." for remark in how), *remarks]
+
+
+def _is_stdout(path: Path) -> bool:
+    """Decide whether a file is standard output, as in atwood batch a.csv >> a.csv."""
+    with suppress(OSError, ValueError):  # there is no such file, or stdout is none
+        return path.is_file() and os.path.samestat(path.stat(), os.fstat(sys.stdout.fileno()))
+    return False
 
 
 def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> AbstractContextManager[Iterator[Piece]]:

@@ -21,8 +21,8 @@ from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NAMES, REGIMES, STANDARD
 from ..solver.scene import INPUTS, MASSES, Angle, Input, InTerms, Scene, SceneError
+from ..tables.cells import EMPTY, has_unit, read_cell
 from ..tables.headings import (
-    EMPTY,
     LIKE_SUM,
     LONGEST_HEADING,
     MASS_NAMES,
@@ -31,12 +31,10 @@ from ..tables.headings import (
     Heading,
     Vocabulary,
     divisions,
-    has_unit,
     is_mass,
     is_unit,
     listed,
     naming,
-    read_cell,
     read_headings,
     refused,
 )

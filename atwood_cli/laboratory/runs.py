@@ -14,7 +14,8 @@ from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import in_quotes, shortened
 from ..reading.names import divided
 from ..solver.scene import MASSES, Input, InTerms, SceneError
-from ..tables.headings import EMPTY, OWN_UNIT, Heading, decimal_commas_in, read_as, read_cell, refused
+from ..tables.cells import EMPTY, OWN_UNIT, decimal_commas_in, read_cell
+from ..tables.headings import Heading, read_as, refused
 from ..tables.sheets import sheet_of, units_in_cells
 from ..tables.sources import Unreadable
 from .columns import (

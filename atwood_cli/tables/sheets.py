@@ -8,7 +8,8 @@ from os import PathLike, fspath
 from typing import Any, NamedTuple
 
 from ..numbers.text import in_quotes, without_blanks
-from .headings import ABOVE, OWN_UNIT, Vocabulary, find_header, recognised, units_in
+from .cells import OWN_UNIT
+from .headings import ABOVE, Vocabulary, find_header, recognised, units_in
 from .records import records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
 from .workbooks import MOST_BYTES, opened_table

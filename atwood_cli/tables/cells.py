@@ -1,0 +1,85 @@
+"""Cells of tables as exact numbers, with the units and uncertainties that their headings state."""
+
+import re
+from collections.abc import Collection, Iterable, Sequence
+from fractions import Fraction
+from typing import Any
+
+from ..numbers.text import in_quotes
+from ..reading.inputs import read_input
+from ..reading.units import PERCENT, symbol_of
+from ..solver.scene import Angle, Input, InTerms, SceneError
+from .headings import ONE, Heading
+
+EMPTY = ("", "NA", "NULL", "null")
+"""The texts of cells without a number: R and databases write a word."""
+OWN_UNIT = re.compile(r"(?![eE][+-]?\d)[^\W\d_]|[°:]")
+"""The sign that a cell has a unit: a letter that is not an exponent's, or the colon of minutes."""
+PART_THOUSANDS = r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$"
+
+
+def decimal_commas_in(rows: Iterable[Sequence[str]], places: Collection[int], separator: str) -> bool:
+    """Decide whether commas in those places of rows are decimal.
+
+    In a table with semicolons all are. In one with tabs they are, unless each comma separates thousands.
+    """
+    if separator in ("", ","):
+        return False
+    with_comma = [cell for row in rows for place in places if (cell := row[place]) and "," in cell]
+    return any(separator == ";" or not re.match(PART_THOUSANDS, cell) for cell in with_comma)
+
+
+def has_unit(cell: object) -> bool:
+    """Decide whether a cell has a unit of its own, or a name for a number."""
+    return isinstance(cell, str) and bool(OWN_UNIT.search(cell))
+
+
+def pointed(name: str, cell: str, comma: bool) -> str:
+    """Return a cell with a decimal point, without blanks around it. Raises SceneError."""
+    if comma and "." in cell:
+        raise SceneError(name, cell, "has a point in a table of decimal commas; write all alike")
+    return (cell.replace(",", ".") if comma else cell).strip()
+
+
+def read_cell(heading: Heading, row: Sequence[Any], comma: bool) -> Input | None:
+    """Return the number in a column, exact and in SI units, with its uncertainty; None if the cell is empty.
+
+    A unit in the cell goes before the unit of the heading. Raises SceneError.
+    """
+    cell = row[heading.place]
+    text = pointed(heading.name, cell, comma) if isinstance(cell, str) else cell
+    if text is None or text in EMPTY:
+        return None
+    try:
+        value, uncertainty, _ = read_input(heading.name, text)
+    except SceneError as error:
+        raise SceneError(heading.name, cell, error.rule) from None
+    terms, factor = (None, ONE) if has_unit(text) else (heading.terms, heading.factor)
+    if isinstance(value, Angle):
+        unit = value.unit if has_unit(text) or symbol_of(heading.unit) != "rad" else "rad"
+        return Input(Angle(value.number * factor, unit), uncertainty * factor, cell)
+    if isinstance(value, InTerms):
+        value, terms = value
+    if factor != 1:
+        value, uncertainty = value * factor, uncertainty and uncertainty * factor
+    if heading.u and (u := row[heading.u.place].strip()) not in EMPTY:
+        if uncertainty:
+            raise SceneError(heading.u.column, u, f"is a second uncertainty, beside {in_quotes(cell)}")
+        uncertainty = _read_uncertainty(heading.u, u, value, comma)
+    elif heading.stated and not uncertainty:
+        uncertainty = _read_uncertainty(heading._replace(unit=""), heading.stated, value, False)
+    return Input(InTerms(value, terms) if terms else value, uncertainty, cell)
+
+
+def _read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool) -> Fraction:
+    """Return the uncertainty of a value, from the cell in its column of uncertainties. Raises SceneError."""
+    number = pointed(heading.column, cell, comma).lstrip("± ")
+    relative = number.endswith(PERCENT) or heading.unit == PERCENT
+    number = number.removesuffix(PERCENT)
+    try:
+        spread = read_input(heading.name, f"1±{number}{PERCENT if relative else ''}").uncertainty
+    except SceneError:
+        raise SceneError(heading.column, cell, "is not an uncertainty; write it like 0.02 or 2%") from None
+    if relative:
+        return spread * abs(value)
+    return spread if has_unit(number) else spread * heading.factor
