@@ -44,7 +44,8 @@ def _status() -> int:
 
         gc.freeze()
         gc.enable()
-        return run()
+        done = run()
+        return status or done  # NumPy, interrupted while it is imported, raises an ImportError
     except KeyboardInterrupt:
         return status or INTERRUPTED
     except Exception:  # an import that is interrupted may raise another error
