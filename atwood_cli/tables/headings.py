@@ -195,7 +195,8 @@ def _apart(column: str) -> tuple[str, str, str]:
     number, word = match.groups(default="")
     unit = word if word == PERCENT or symbol_of(word) else ""
     rest = f"{column[: match.start()]} {word.removeprefix(unit)}{column[match.end() :]}"
-    return without_blanks(re.sub(r"[(\[]\s*[)\]]", " ", rest)), number.replace(",", "."), unit
+    rest = re.sub(r"^[(\[](.*?)[)\]]|[(\[]\s*[)\]]", r"\1 ", rest)  # (m1±1)g is m1 g
+    return without_blanks(rest), number.replace(",", "."), unit
 
 
 def divisions(text: str) -> Iterator[tuple[str, str, bool]]:
@@ -251,11 +252,12 @@ def _named(word: str, vocabulary: Vocabulary) -> Heading | None:
         return Heading(0, "", "", uncertain=True)
     match = UNCERTAINTY.fullmatch(word) if vocabulary.uncertain else None
     key = re.sub(r"[\s_]", "", normalize("NFKC", (match[1] or match[2]) if match else word))
-    letters = key if key in vocabulary.names else key.rstrip("0123456789")
+    bare = re.sub(r"(?<=\d)(?:st|nd|rd|th)$", "", key)  # t 1st is t1
+    letters = key if key in vocabulary.names else bare.rstrip("0123456789")
     name = vocabulary.names.get(letters, "")
     if not name or (letters != key and name not in vocabulary.repeated):
         return None
-    return Heading(0, "", name, key[len(letters) :], uncertain=bool(match))
+    return Heading(0, "", name, bare[len(letters) :], uncertain=bool(match))
 
 
 def _add_uncertainty(headings: dict[tuple[str, str], Heading], u: Heading) -> None:

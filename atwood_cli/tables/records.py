@@ -19,6 +19,8 @@ from .sources import Unreadable, whole_lines
 if TYPE_CHECKING:
     import polars as pl
 
+MOST_LINES = 50
+"""The most lines of a cell: a note has fewer. A quotation mark that is left open would swallow rows."""
 UNREADABLE = "unreadable"
 """The member that has the text of a line of NDJSON that cannot be read."""
 BYTE_ORDER_MARK = "\ufeff"
@@ -143,9 +145,12 @@ class Csv:
         texts: list[str] = []
         rows: list[list[str]] = []
         errors: dict[int, str] = {}
-        for _, record, cells in records_of(text, self.separator, self._line):
+        for line, record, cells in records_of(text, self.separator, self._line):
             bare, lacking = record.rstrip("\r\n"), width - len(cells)
-            if lacking:
+            if (most := 1 + max(cell.count("\n") for cell in cells)) > MOST_LINES:
+                why = f"has {most} lines, and the most is {MOST_LINES}; is a quotation mark left open?"
+                errors[len(texts)] = f"a cell of the row that begins in line {line} {why}"
+            elif lacking:
                 errors[len(texts)] = f"the row {wrong_width(len(cells), width, self.separator)}"
             if lacking < 0:  # the last cell takes the rest, so that results stand in their columns
                 bare = self._written([*cells[: width - 1], self.separator.join(cells[width - 1 :])])
