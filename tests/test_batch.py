@@ -25,7 +25,7 @@ from atwood_cli.cli import run
 from atwood_cli.reading.units import UNITS
 from atwood_cli.tables import sources
 
-from .tools.running import FROM, HANGS, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
+from .tools.running import FROM, HANGS, TOP, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
 
 TEXT = "m1,m2\n1,3\n"
 
@@ -239,7 +239,15 @@ def test_results_are_not_added_to_the_input(tmp_path: Path, capsys: pytest.Captu
     assert (capsys.readouterr().err, scenes.read_text()) == (refused, "m1,m2\n1,3\n")
 
 
-def test_polars_that_is_missing_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_polars_that_is_too_old_or_missing_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
+    (oldest,) = re.findall("polars>=([0-9.]+)", (TOP / "pyproject.toml").read_text(encoding="utf-8"))
+    monkeypatch.setattr(pl, "__version__", oldest)
+    assert batch(TEXT, "--only a").status == 0
+    monkeypatch.setattr(pl, "__version__", "1.9.0")
+    why = f"this needs polars {oldest} or newer, not 1.9.0; pip install --upgrade polars"
+    assert batch(TEXT) == (1, "", f"atwood: {why}\n")
+    with pytest.raises(ImportError, match=re.escape(why)):
+        solve_table(pl.DataFrame({"m1": [1.0], "m2": [3.0]}))
     monkeypatch.setitem(sys.modules, "polars", None)
     why = f"this needs polars; install it with: pip install '{FROM}[batch]'"
     assert batch(TEXT) == (1, "", f"atwood: {why}\n")

@@ -6,6 +6,7 @@ with batches of about 100,000 rows, in threads of its own, often in two at once,
 A file of Parquet comes in such batches, too, one after the other, from the thread that writes.
 """
 
+import re
 from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar, cast
@@ -19,6 +20,17 @@ if TYPE_CHECKING:
     import polars as pl
 
 Table = TypeVar("Table")
+OLDEST_POLARS = "1.41.1"
+
+
+def check_polars() -> None:
+    """Raise ImportError for an older polars than the extra asks for: it reads a repeated column as one."""
+    import polars as pl
+
+    oldest, version = ([*map(int, re.findall(r"\d+", x)[:3])] for x in (OLDEST_POLARS, pl.__version__))
+    if version < oldest:
+        versions = f"{OLDEST_POLARS} or newer, not {pl.__version__}"
+        raise ImportError(f"this needs polars {versions}; pip install --upgrade polars")
 
 
 def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
@@ -41,11 +53,12 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
         SceneError: A quantity is not known (a ValueError).
         ValueError: The table is no frame of polars or pandas, lacks a mass, or has a column that could be
             meant for an input, holds no numbers, or is named as a result.
-        ImportError: polars is missing.
+        ImportError: polars is missing or too old.
     """
     with naming_the_extra():
         import polars as pl
 
+    check_polars()
     frame: Any = table
     wanted = Wanted(read_quantities(quantities))
     try:

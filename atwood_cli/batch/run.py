@@ -15,7 +15,6 @@ from contextlib import (
     suppress,
 )
 from decimal import Decimal
-from importlib import import_module
 from io import BytesIO, StringIO, TextIOWrapper
 from itertools import chain, islice, takewhile
 from pathlib import Path
@@ -34,7 +33,7 @@ from ..tables.headings import ABOVE, Heading, listed, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import Unreadable, blocks_of, cannot_read, is_packed, is_stream
 from ..tables.workbooks import opened_table
-from .frames import with_results
+from .frames import check_polars, with_results
 from .solving import ERROR, VOCABULARY, ReadColumns, Tally, Wanted, read_columns, solve_cells
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ class Job(NamedTuple):
 
 def run_batch(job: Job, tally: Tally) -> list[str]:
     """Solve a table of scenes. Returns sentences on how it was read. Raises OSError."""
-    import_module("polars")
+    check_polars()
     # As polars is imported, it takes Ctrl-C: a pipe would be waited for, and an interrupt raised twice.
     signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
     how: list[str] = []
