@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 
 from atwood_cli.explain.derivation import Explanation, explain
 from atwood_cli.explain.equations import Derivation, Equation
+from atwood_cli.explain.given import inputs_in_words
 from atwood_cli.numbers.digits import is_infinite
-from atwood_cli.output.text import inputs_in_words
 from atwood_cli.output.typeset import as_markdown, as_text, chain, written
 from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.inputs import read_scene

@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from ..explain.given import inputs_in_words
 from ..numbers.digits import format_number
 from ..numbers.text import counted, sentence
 from ..output.page import Page, aligned
-from ..output.text import Report, cell, inputs_in_words
+from ..output.text import Report, cell
 from ..solver.scene import parameter_of
 from .columns import MEASURED
 from .estimate import ROUNDING, as_data, expected

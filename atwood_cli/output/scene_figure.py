@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..explain.contact import kind_of, point, say_profile
+from ..explain.given import in_unit_typed, inputs_with_effect
 from ..explain.messages import unmarked, verdict
 from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..solver import arc
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
 from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_picture, page, typeset, write_beside
-from .text import Picture, in_unit_typed, inputs_with_effect
+from .text import Picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

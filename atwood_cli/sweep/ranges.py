@@ -14,6 +14,7 @@ from math import inf, prod
 from typing import NamedTuple
 
 from ..explain.conditions import Condition, failures_of
+from ..explain.given import inputs_with_effect
 from ..numbers.digits import (
     DOUBLE_DIGITS,
     SHOWN_DIGITS,
@@ -25,7 +26,6 @@ from ..numbers.digits import (
 )
 from ..numbers.interval import decimal_context
 from ..numbers.text import in_quotes
-from ..output.text import inputs_with_effect
 from ..reading.inputs import read_exactly, read_value, read_whole
 from ..reading.units import MAX_DIGITS, read_number
 from ..solver.answers import Answers

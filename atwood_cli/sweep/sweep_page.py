@@ -8,10 +8,11 @@ from fractions import Fraction
 from itertools import groupby
 
 from ..explain.conditions import Condition, Failures
+from ..explain.given import scene_record
 from ..explain.messages import on_units, reasons_in, unmarked
 from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
 from ..output.page import Page, aligned, progress
-from ..output.text import VERSION, cell, scene_record
+from ..output.text import VERSION, cell
 from ..solver.answers import Answers
 from ..solver.quantities import QUANTITIES, STANDARD
 from ..solver.scene import with_unit
