@@ -25,7 +25,7 @@ MAY_IMPORT = {
     "batch": "numbers solver reading explain arrays tables output",
     "sweep": "numbers solver reading explain output",
     "laboratory": "numbers solver reading explain tables output",
-    "tradeoff": "numbers solver reading arrays output api",
+    "tradeoff": "numbers solver reading explain arrays output api",
     "cli": "numbers solver reading explain tables output batch sweep laboratory tradeoff",
     "__main__": "cli",
 }

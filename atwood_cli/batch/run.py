@@ -30,10 +30,10 @@ from ..solver.quantities import QUANTITIES
 from ..solver.scene import SceneError
 from ..tables.cells import decimal_commas_in
 from ..tables.headings import ABOVE, Heading, listed, read_as, recognised
-from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import Unreadable, blocks_of, cannot_read, is_packed, is_stream
 from ..tables.workbooks import opened_table
 from .frames import check_polars, with_results
+from .pieces import Csv, Piece, read_ndjson
 from .solving import ERROR, VOCABULARY, ReadColumns, Tally, Wanted, read_columns, solve_cells
 
 if TYPE_CHECKING:

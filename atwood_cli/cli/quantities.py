@@ -4,7 +4,8 @@ import sys
 from shutil import get_terminal_size
 from typing import Annotated
 
-from ..output.text import VERSION, Destination, Report, say, show
+from ..explain.given import VERSION
+from ..output.text import Destination, Report, say, show
 from ..reading.names import read_names
 from ..solver.quantities import QUANTITIES, REGIMES
 from .options import DONE, OUTPUT, argument, with_options

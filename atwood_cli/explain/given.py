@@ -11,6 +11,9 @@ from ..numbers.rational import Typed
 from ..solver.decisions import Decisions
 from ..solver.scene import INERTIA_FACTORS, INPUTS, MEASURED, Scene, parameter_of, with_unit
 
+VERSION = 3
+"""The version of JSON's keys (see `examples/json.md`), which grows when a key goes or changes its meaning."""
+
 
 def scene_record(scene: Scene, round_: Rounding[Any] = to_double) -> dict[str, object]:
     """Return the inputs for JSON, in SI units and degrees: numbers, or text with a unit.

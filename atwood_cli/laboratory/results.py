@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from ..explain.given import VERSION
 from ..numbers.digits import format_number, rounding_to_uncertainty, strip_zeros, to_digits, with_uncertainty
 from ..numbers.text import counted
-from ..output.text import VERSION, in_html
 
 
 class Quantity(NamedTuple):
@@ -117,6 +117,8 @@ class Fit(NamedTuple):
         return f"<Fit of {'; '.join([counted(len(self.runs), 'run'), *results])}>"
 
     def _repr_html_(self) -> str:
+        from ..output.text import in_html
+
         return in_html(str(self))
 
     def __str__(self) -> str:

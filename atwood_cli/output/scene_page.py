@@ -7,14 +7,14 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from ..explain.contact import Contact
-from ..explain.given import inputs_with_effect, scene_record, terms_record
+from ..explain.given import VERSION, inputs_with_effect, scene_record, terms_record
 from ..explain.messages import measured_quantities, notes, reasons, remarks, unmarked, verdict
 from ..numbers.digits import rounding_to_place, rounding_to_uncertainty, strip_zeros, with_uncertainty
 from ..solver.answers import Answers
 from ..solver.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..solver.scene import with_unit
 from .files import printable
-from .text import IN_MARKDOWN, VERSION, cell
+from .text import IN_MARKDOWN, cell
 
 if TYPE_CHECKING:
     from .page import Page

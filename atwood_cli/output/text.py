@@ -68,10 +68,6 @@ def drop(stream: TextIO) -> None:
         os.close(nowhere)
 
 
-VERSION = 3
-"""The version of JSON's keys (see `examples/json.md`), which grows when a key goes or changes its meaning."""
-
-
 class Report(NamedTuple):
     """A result in all forms that may be asked for. Each is made when it is asked for.
 

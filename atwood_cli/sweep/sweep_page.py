@@ -8,17 +8,16 @@ from fractions import Fraction
 from itertools import groupby
 
 from ..explain.conditions import Condition, Failures
-from ..explain.given import scene_record
+from ..explain.given import VERSION, scene_record
 from ..explain.messages import on_units, reasons_in, unmarked
 from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
 from ..output.page import Page, aligned, progress
-from ..output.text import VERSION, cell
+from ..output.text import cell
 from ..solver.answers import Answers
 from ..solver.quantities import QUANTITIES, STANDARD
 from ..solver.scene import with_unit
 from .changes import changes, say_regimes
 from .ranges import LOCKED, Row, Sweep, solve_rows
-from .sweep_figure import MAX_CURVES
 
 
 class SweepPage:
@@ -121,6 +120,8 @@ class SweepPage:
 
 
 PULLEY = "critical_pulley_mass"
+MOST_SENTENCES = 6
+"""The most points of a second range for each of which a sentence says the regimes."""
 ASSUMED = "mu is not given, so the string is assumed not to slip."
 PULLEYS = "M is not given, so each row on the verge has its own critical pulley mass."
 
@@ -128,7 +129,7 @@ PULLEYS = "M is not given, so each row on the verge has its own critical pulley 
 def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
     """Say the regimes along one range, for each point of the other range, if these are few."""
     along, sentences = sweep.along, dict[str, str]()
-    if sweep.total <= MAX_CURVES * len(along.points):
+    if sweep.total <= MOST_SENTENCES * len(along.points):
         for scene, place in sweep.scenes(sweep.others):
             here = [row for row in rows if place.items() <= row.at.items() and row.at[along.name] != LOCKED]
             known = {Fraction(row.at[along.name].value): row.regime for row in here}

@@ -6,10 +6,11 @@ from itertools import chain, groupby
 from math import isinf
 from operator import attrgetter
 
+from ..explain.given import VERSION
 from ..numbers.digits import format_number
 from ..output.figure import BLUE, GREEN, PURPLE, RED, page
 from ..output.page import Page
-from ..output.text import VERSION, Picture
+from ..output.text import Picture
 from .measure import EXACT_DIGITS, MOST_ROWS, SEED, SETTINGS, Measured
 
 LEGEND = (
