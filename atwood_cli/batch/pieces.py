@@ -13,8 +13,8 @@ from itertools import chain, islice
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..numbers.text import in_quotes
-from ..tables.headings import Heading, find_header, units_in
-from ..tables.records import GoesOn, records_of, wrong_width
+from ..tables.headings import Heading, units_in
+from ..tables.records import GoesOn, find_header, records_of, wrong_width
 from ..tables.sources import Unreadable, whole_lines
 
 if TYPE_CHECKING:

@@ -4,10 +4,11 @@ import re
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from shlex import quote
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from ..numbers.text import in_quotes
 from ..solver.scene import INPUTS, MASSES, Input, SceneError
+from ..tables.cells import EMPTY, decimal_commas_in, has_unit
 from ..tables.headings import (
     LIKE_SUM,
     LONGEST_HEADING,
@@ -56,27 +57,63 @@ LIKE_MASS = re.compile(
 )
 
 
-def headings_of(sheet: Sheet, labels: Collection[str], named: Mapping[str, str]) -> list[Heading]:
-    """Return the columns that hold a quantity. Raises Unreadable, also for tables side by side."""
-    known = [x for x in recognised(sheet.columns, VOCABULARY, named) if x not in (*labels, *OF_COLUMN_BEFORE)]
-    if len(twice := [x for x in dict.fromkeys(known) if known.count(x) > 1]) > 1:
+class Columns(NamedTuple):
+    """The columns of runs: those of quantities, what was measured, the numbers of rows, and decimal commas.
+
+    Cells of the places ``with_units`` all have a unit. ``others`` says how columns of no quantity are read.
+    """
+
+    headings: Sequence[Heading]
+    kind: Kind
+    numbers: Sequence[int]
+    comma: bool
+    with_units: Collection[int]
+    others: Sequence[str]
+
+    @property
+    def has_unit(self) -> set[str]:
+        """Return the quantities whose heading, or each of whose cells, has a unit."""
+        return {own.name for own in self.headings if own.unit or own.place in self.with_units}
+
+
+def columns_of(
+    sheet: Sheet, labels: Collection[str], given: Mapping[str, Input], named: Mapping[str, str]
+) -> Columns:
+    """Return the columns of runs. Raises Unreadable, SceneError."""
+    names = [x for x in recognised(sheet.columns, VOCABULARY, named) if x not in (*labels, *OF_COLUMN_BEFORE)]
+    if len(twice := [x for x in dict.fromkeys(names) if names.count(x) > 1]) > 1:
         raise Unreadable(f"tables stand side by side, with {listed(twice)} in each; put one below the other")
-    return read_headings(sheet.columns, VOCABULARY, labels, named)
+    headings = read_headings(sheet.columns, VOCABULARY, labels, named)
+    places = [column.place for heading in headings for column in (heading, heading.u) if column]
+    numbers = [] if 0 in places else _numbers_of_rows(sheet)
+    known = {*places, 0} if numbers else {*places}
+    unread = {  # columns of numbers, by their places: the heading, and the first number
+        place: (column, cell)
+        for place, (column, *cells) in enumerate(zip(sheet.columns, *sheet.rows, strict=True))
+        if not (place in known or column in labels) and (cell := next(filter(LIKE_NUMBER.match, cells), ""))
+    }
+    kind = _kind_of_runs(sheet, headings, unread, given, named)
+    _check_labels(headings, unread)
+    others = [f"{in_quotes(sheet.columns[0])} as the numbers of rows"] if numbers else []
+    others += [f"{in_quotes(column)} as a label" for column, _ in unread.values()]
+    if kind == "a":  # a height has no effect
+        headings = [heading for heading in headings if heading.name != "drop"]
+    comma = decimal_commas_in(sheet.rows, places, sheet.separator)
+    with_units = [x for x in places if all(row[x] in EMPTY or has_unit(row[x]) for row in sheet.rows)]
+    return Columns(headings, kind, numbers or range(1, len(sheet.rows) + 1), comma, with_units, others)
 
 
-def numbers_of_rows(sheet: Sheet, headings: Sequence[Heading]) -> list[int]:
-    """Return the numbers of rows as the first column has them; none if it has others, or a quantity."""
-    cells = [row[0].strip() for row in sheet.rows]
-    column = sheet.columns[0]
-    is_read = any(heading.place == 0 for heading in headings)
+def _numbers_of_rows(sheet: Sheet) -> list[int]:
+    """Return the numbers of rows as the first column has them; none if it has others, or a mass."""
+    cells, column = [row[0].strip() for row in sheet.rows], sheet.columns[0]
     is_mass = LIKE_MASS.search(column[:LONGEST_HEADING]) or unit_within(column, Heading(0, column, "m1"))
-    if is_read or is_mass or not all(re.fullmatch("[0-9]{1,9}", cell) for cell in cells):
+    if is_mass or not all(re.fullmatch("[0-9]{1,9}", cell) for cell in cells):
         return []
     numbers = [*map(int, cells)]
     return numbers if numbers == sorted({*numbers}) else []
 
 
-def kind_of_runs(
+def _kind_of_runs(
     sheet: Sheet,
     headings: Sequence[Heading],
     unread: Mapping[int, tuple[str, str]],
@@ -158,7 +195,7 @@ def _alike(columns: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
     return [x for x, rest in zip(columns, words, strict=True) if rest == most]
 
 
-def check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, str]]) -> None:
+def _check_labels(headings: Sequence[Heading], unread: Mapping[int, tuple[str, str]]) -> None:
     """Raise Unreadable for columns of numbers that could hold a quantity, and are no labels then."""
     measured = {own.place for own in headings if own.name in MEASURED}
     of_columns = {x: why for i, (x, _) in unread.items() if (why := _doubt(x, is_behind=i - 1 in measured))}

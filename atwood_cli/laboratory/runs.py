@@ -2,7 +2,7 @@
 
 import re
 from collections import defaultdict
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -11,25 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..numbers.digits import ALL_DIGITS
-from ..numbers.text import in_quotes, shortened
+from ..numbers.text import shortened
 from ..reading.names import divided
 from ..solver.scene import MASSES, Input, InTerms, SceneError
-from ..tables.cells import EMPTY, OWN_UNIT, decimal_commas_in, read_cell
+from ..tables.cells import OWN_UNIT, read_cell
 from ..tables.headings import Heading, read_as, refused
-from ..tables.sheets import sheet_of, units_in_cells
+from ..tables.sheets import Sheet, sheet_of, units_in_cells
 from ..tables.sources import Unreadable
-from .columns import (
-    CONDITIONS,
-    LIKE_NUMBER,
-    MEAN,
-    MEASURED,
-    VOCABULARY,
-    Kind,
-    check_labels,
-    headings_of,
-    kind_of_runs,
-    numbers_of_rows,
-)
+from .columns import CONDITIONS, MEAN, MEASURED, VOCABULARY, Columns, Kind, columns_of
 
 Column = NDArray[np.float64]
 Places = NDArray[np.intp]
@@ -51,6 +40,8 @@ CART = 5
 ZERO = re.compile(r"[+-]?0+([.,]0*)?( ?[^\W\d_]+)?|")
 MEASURABLE = 1e-30, 1e30
 REACHES_0 = "has an uncertainty that reaches 0"
+OF_RUNS = (*MASSES, "drop")
+"""What a run gives; rows with the same numbers are one run."""
 OUT_OF_RANGE = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
 
 
@@ -93,10 +84,18 @@ class Runs(NamedTuple):
         return in_words(*sorted(row for i in runs for row in self.rows[i]))
 
 
+class Row(NamedTuple):
+    """A row by its number: its cells by where they stand, as 8:t2 or 8:m1, and why it is no run, or ""."""
+
+    number: int
+    cells: Mapping[str, tuple[Heading, Input]]
+    unused: str = ""
+
+
 Number = tuple[Fraction, Fraction]
 """An exact value in SI units, and its standard uncertainty."""
-RowsOfRuns = dict[tuple[tuple[str, Number], ...], tuple[list[int], dict[str, Number]]]
-"""The rows of a run and its measurements by their cells; the key is what the run gives, by name."""
+RowsOfRuns = Mapping[tuple[tuple[str, Number], ...], Sequence[Row]]
+"""The rows of each run, by what it gives: the masses, and the height of a fall."""
 
 
 def read_runs(
@@ -116,86 +115,63 @@ def read_runs(
     table of runs, SceneError for what does not fit the table.
     """
     sheet = units_in_cells(sheet_of(source, VOCABULARY, named, sheet_name))
-    labels = divided(labels, sheet.columns)
-    headings = headings_of(sheet, labels, named)
-    numbers = numbers_of_rows(sheet, headings)
-    places = [column.place for heading in headings for column in (heading, heading.u) if column]
-    known = {*places, 0} if numbers else {*places}
-    unread = {  # columns of numbers, by their places: the heading, and the first number
-        place: (column, cell)
-        for place, (column, *cells) in enumerate(zip(sheet.columns, *sheet.rows, strict=True))
-        if not (place in known or column in labels) and (cell := next(filter(LIKE_NUMBER.match, cells), ""))
-    }
-    kind = kind_of_runs(sheet, headings, unread, given, named)
-    if kind == "a":  # a height has no effect
-        headings = [heading for heading in headings if heading.name != "drop"]
-    check_labels(headings, unread)
-    comma = decimal_commas_in(sheet.rows, places, sheet.separator)
-    words = [f"{in_quotes(sheet.columns[0])} as the numbers of rows"] if numbers else []
-    words += [f"{in_quotes(column)} as a label" for column, _ in unread.values()]
+    columns = columns_of(sheet, divided(labels, sheet.columns), given, named)
     by = {x: given[x].value for x in ("R", "g") if x in given and not given[x].uncertainty}
     shared = {x: _in_own_terms(x, given[x], by) for x in (*MASSES, "hanger", "drop") if x in given}
     common = {x: float(u) for x, (_, u, _) in shared.items() if u and x != "drop"}
     if wide := [x for x in common if shared[x].uncertainty >= shared[x].value]:
         raise SceneError(wide[0], given[wide[0]].given, REACHES_0)
     hanger = shared.pop("hanger", Input(Fraction(0), Fraction(0), None))
+    others = [*columns.others]
     if hanger.given is not None:
-        words.append(f"{shortened(str(hanger.given))} of hanger added to m1 and m2")
-    added = {**dict.fromkeys(MASSES, hanger.value), "drop": Fraction(0)}
-    for_all = {x: (read.value + added[x], Fraction(0)) for x, read in shared.items()}
-    with_units = [x for x in places if all(row[x] in EMPTY or OWN_UNIT.search(row[x]) for row in sheet.rows)]
-    remarks = read_as(headings, sheet.separator, comma, [*words, *sheet.remarks], with_units)
+        others.append(f"{shortened(str(hanger.given))} of hanger added to m1 and m2")
+    others += sheet.remarks
+    remarks = read_as(columns.headings, sheet.separator, columns.comma, others, columns.with_units)
     left_out = [*map(str, without)]
-    same, runs, unused = dict[str, Input](), RowsOfRuns(), defaultdict[str, list[int]](list)
-    u_of = defaultdict[str, dict[str, Fraction]](dict)  # by names and places
-    numbers = numbers or list(range(1, len(sheet.rows) + 1))
-    for number, row in zip(numbers, sheet.rows, strict=True):
-        if why := _no_run(row, headings):
-            unused[why].append(number)
-            continue
-        inputs, measured = dict[str, Number](), dict[str, Number]()
-        try:
-            cells = _read_row(number, row, headings, comma, by)
-        except Unreadable:
-            if str(number) not in left_out:
-                raise
-            continue
-        for heading, cell in cells:
-            is_measured = heading.name in MEASURED
-            place = f"{number}:{f'{kind[0]}{heading.number}' if is_measured else heading.name}"
-            if (is_measured or cell.value) and {str(number), place}.isdisjoint(left_out):  # no mass is exact
-                u_of[heading.name][place] = cell.uncertainty
-            if is_measured:
-                measured[place] = cell[:2]
-            elif heading.name not in CONDITIONS:
-                inputs[heading.name] = cell.value + added[heading.name], cell.uncertainty
-            elif same.setdefault(heading.name, cell)[:2] != cell[:2]:
-                why = f"differs between rows; a fit takes one {heading.name}, so fit the rows of each apart"
-                raise refused(heading.column, why)
-        if measured:
-            rows, measurements = runs.setdefault(tuple({**inputs, **for_all}.items()), ([], {}))
-            rows.append(number)
-            measurements.update(measured)
-        else:
-            unused[f"no {MEASURED[kind]} was measured"].append(number)
-    remarks += [f"{in_words(*rows)}: not used, as {reason}." for reason, rows in unused.items()]
+    rows = [*_rows_of(sheet, columns, by, left_out)]
+    same = _same_in_all(rows)
+    for reason in dict.fromkeys(row.unused for row in rows if row.unused):
+        unused = (row.number for row in rows if row.unused == reason)
+        remarks.append(f"{in_words(*unused)}: not used, as {reason}.")
+    used = [row for row in rows if not row.unused]
+    heights = {read[:2] for row in used for own, read in row.cells.values() if own.name == "drop"}
+    if len(heights) == 1:  # if it is wrong, it is so in all runs alike
+        same["drop"] = shared["drop"] = Input(*heights.pop(), None)
+    runs = defaultdict[tuple[tuple[str, Number], ...], list[Row]](list)
+    for row in used:
+        given_by = {own.name: read[:2] for own, read in row.cells.values() if own.name in OF_RUNS}
+        given_by |= {x: (read.value, Fraction(0)) for x, read in shared.items()}
+        given_by |= {x: (given_by[x][0] + hanger.value, given_by[x][1]) for x in MASSES}
+        runs[tuple(given_by.items())].append(row)
     if not runs:
         raise Unreadable(f"it has no runs{behind_an_error(remarks)}")
-    for of_places in u_of.values():
-        lacking = [place for place, u in of_places.items() if not u]
-        if 0 < len(lacking) < len(of_places):
-            none = f"{in_words(lacking[0])} has no uncertainty, or one of 0"
-            raise Unreadable(f"{none}; give one above 0, as others have")
+    _check_uncertainties(rows, left_out)
     if left_out:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
-    result = _as_columns(kind, runs, numbers, left_out)
-    heights = {dict(run).get("drop") for run in runs}
-    if "drop" not in given and len(heights) == 1 and (height := heights.pop()):
-        same["drop"] = Input(*height, None)  # if it is wrong, it is so in all runs alike
-        result.u["drop"][:] = 0
-    has_unit = {own.name for own in headings if own.unit or own.place in with_units}
-    doubts = _doubts(result, {**given, **same}, has_unit)
+    result = _as_columns(columns, runs, left_out)
+    doubts = _doubts(result, {**given, **same}, columns.has_unit)
     return result._replace(remarks=remarks, doubts=doubts, common=common, same=same)
+
+
+def _same_in_all(rows: Sequence[Row]) -> dict[str, Input]:
+    """Return the conditions that the table has. Raises Unreadable if one differs between rows."""
+    same = dict[str, Input]()
+    for own, read in (cell for row in rows for cell in row.cells.values()):
+        if own.name in CONDITIONS and same.setdefault(own.name, read)[:2] != read[:2]:
+            why = f"differs between rows; a fit takes one {own.name}, so fit the rows of each apart"
+            raise refused(own.column, why)
+    return same
+
+
+def _check_uncertainties(rows: Sequence[Row], left_out: Collection[str]) -> None:
+    """Raise Unreadable if a quantity has an uncertainty in some cells alone; a mass of 0 needs none."""
+    used = [row for row in rows if str(row.number) not in left_out]
+    cells = [(own.name, place, read) for row in used for place, (own, read) in row.cells.items()]
+    cells = [cell for cell in cells if cell[1] not in left_out and (cell[0] in MEASURED or cell[2].value)]
+    stated = {name for name, _, read in cells if read.uncertainty}
+    if lacking := [place for name, place, read in cells if name in stated and not read.uncertainty]:
+        none = f"{in_words(lacking[0])} has no uncertainty, or one of 0"
+        raise Unreadable(f"{none}; give one above 0, as others have")
 
 
 def _doubts(runs: Runs, given: Mapping[str, Input], has_unit: Collection[str]) -> list[str]:
@@ -226,30 +202,32 @@ def _in_own_terms(name: str, read: Input, by: Mapping[str, Any]) -> Input:
     return Input(value, uncertainty, read.given)
 
 
-def _as_columns(kind: Kind, runs: RowsOfRuns, numbers: Sequence[int], words: Sequence[str]) -> Runs:
-    """Return runs without the rows and cells of these words, unless all of a run are left out."""
-    measured = [cells for _, cells in runs.values()]
-    known = {*map(str, numbers), *(cell for cells in measured for cell in cells)}
-    if absent := [word for word in words if word not in known]:
-        ends = f"{numbers[0]} to {numbers[-1]}"
+def _as_columns(columns: Columns, runs: RowsOfRuns, left_out: Collection[str]) -> Runs:
+    """Return runs without the rows and cells that are left out, unless all of a run are."""
+    measured = [
+        {place: read[:2] for row in rows for place, (own, read) in row.cells.items() if own.name in MEASURED}
+        for rows in runs.values()
+    ]
+    known = {*map(str, columns.numbers), *(place for cells in measured for place in cells)}
+    if absent := [word for word in left_out if word not in known]:
+        ends = f"{columns.numbers[0]} to {columns.numbers[-1]}"
         rule = f"is neither a row, {ends}, nor a measurement, as {next(iter(measured[0]))}"
         raise SceneError("without", absent[0], rule)
-    kept = [{x: cells[x] for x in cells if {x, x.split(":")[0]}.isdisjoint(words)} for cells in measured]
+    kept = [{x: cells[x] for x in cells if {x, x.split(":")[0]}.isdisjoint(left_out)} for cells in measured]
     used = [some or cells for some, cells in zip(kept, measured, strict=True)]
-    cells = [cell for some in used for cell in some]
     values, u_values = np.array([number for some in used for number in some.values()], float).T
     given = {x: np.array([dict(run)[x] for run in runs], float).T for x, _ in next(iter(runs))}
     return Runs(
-        kind,
+        columns.kind,
         {x: column for x, (column, _) in given.items()},
         {x: u for x, (_, u) in given.items()},
-        [rows for rows, _ in runs.values()],
+        [[row.number for row in rows] for rows in runs.values()],
         np.array([not some for some in kept]),
         np.array([sum(value for value, _ in some.values()) / len(some) for some in used], float),
         values,
         u_values,
         np.repeat(np.arange(len(used)), [*map(len, used)]),
-        cells,
+        [place for some in used for place in some],
         10.0 ** min(0, *(int(ALL_DIGITS.normalize(Decimal(str(x))).as_tuple().exponent) for x in values)),
     )
 
@@ -283,28 +261,47 @@ def _no_run(row: Sequence[str], headings: Sequence[Heading]) -> str:
     return "the height and the time are 0" if begins else ""
 
 
-def _read_row(
-    number: int, row: Sequence[str], headings: Sequence[Heading], comma: bool, by: Mapping[str, Any]
-) -> list[tuple[Heading, Input]]:
-    """Return the cells of a row that are not empty, as measurements may be. Raises Unreadable.
+def _word(own: Heading) -> str:
+    """Return the word for a column by which its cells are named: t2, m1."""
+    return f"{own.name[0]}{own.number}" if own.name in MEASURED else own.name
+
+
+def _rows_of(
+    sheet: Sheet, columns: Columns, by: Mapping[str, Any], left_out: Collection[str]
+) -> Iterator[Row]:
+    """Yield the rows of a table, without those that cannot be read and are left out. Raises Unreadable."""
+    for number, row in zip(columns.numbers, sheet.rows, strict=True):
+        if why := _no_run(row, columns.headings):
+            yield Row(number, {}, why)
+            continue
+        try:
+            read = _read_row(row, columns, by)
+        except SceneError as error:
+            if str(number) in left_out:
+                continue
+            raise Unreadable(f"row {number}: {error}; {NO_RUN}") from None
+        cells = {f"{number}:{_word(own)}": (own, cell) for own, cell in read}
+        is_measured = any(own.name in MEASURED for own, _ in read)
+        yield Row(number, cells, "" if is_measured else f"no {MEASURED[columns.kind]} was measured")
+
+
+def _read_row(row: Sequence[str], columns: Columns, by: Mapping[str, Any]) -> list[tuple[Heading, Input]]:
+    """Return the cells of a row that are not empty, as measurements may be. Raises SceneError.
 
     Numbers in other terms are converted ``by`` R or g, or by that of the row.
     """
     cells: list[tuple[Heading, Input]] = []
-    for heading in sorted(headings, key=lambda heading: heading.name not in CONDITIONS):
+    for heading in sorted(columns.headings, key=lambda heading: heading.name not in CONDITIONS):
         name = heading.name
-        try:
-            if not (cell := read_cell(heading, row, comma)):
-                if name in MEASURED:
-                    continue
-                raise SceneError(name, None, "is missing; write it in each row")
-            if name in CONDITIONS:
-                by = {**by, name: cell.value}
-            else:
-                cell = _in_own_terms(name, cell, by)
-            if not in_range(cell):
-                raise SceneError(name, cell.given, OUT_OF_RANGE)
-        except SceneError as error:
-            raise Unreadable(f"row {number}: {error}; {NO_RUN}") from None
+        if not (cell := read_cell(heading, row, columns.comma)):
+            if name in MEASURED:
+                continue
+            raise SceneError(name, None, "is missing; write it in each row")
+        if name in CONDITIONS:
+            by = {**by, name: cell.value}
+        else:
+            cell = _in_own_terms(name, cell, by)
+        if not in_range(cell):
+            raise SceneError(name, cell.given, OUT_OF_RANGE)
         cells.append((heading, cell))
     return cells

@@ -7,13 +7,10 @@ count. The user names others, as by --column t='Fallzeit (s)'. What a heading sa
 line "read as", or refused with what to type.
 """
 
-import csv
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from io import StringIO
-from itertools import islice
 from shlex import quote
 from typing import NamedTuple
 from unicodedata import normalize
@@ -21,14 +18,11 @@ from unicodedata import normalize
 from ..numbers.text import in_quotes, without_blanks
 from ..reading.units import PERCENT, UNITS, Malformed, read_unit, symbol_of, terms_of
 from ..solver.scene import SceneError, Terms, parameter_of
-from .sources import LONGEST_RECORD, Unreadable
+from .sources import Unreadable
 
-SEPARATORS = ",\t;"
 NO_UNIT = ("", "-", "1")
 LONGEST_HEADING = 80
 """The most characters of a heading that has a unit: the patterns take long for long texts."""
-MOST_ABOVE = 40
-"""The most rows of titles above the headings."""
 ABOVE = "lines above the headings left out"
 SIGN = r"(?:±|\+/?-)"
 STATED = re.compile(rf",?\s*{SIGN}\s*([\d.,]*\d(?:[eE]-?\d+)?)\s*(%|[^\W\d_][^\s()\[\],]*)?")
@@ -132,25 +126,6 @@ def read_headings(
 def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[str, str] = {}) -> list[str]:
     """Return the columns that the vocabulary knows, or that the user has named."""
     return [column for column in columns if _meaning(column, vocabulary, named)]
-
-
-def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) -> tuple[int, str, int]:
-    """Return how many headings of a table are ``known``, its separator, and the number of rows above them.
-
-    The header is the first row with two known headings, or else with most words, by the separator that makes
-    most known headings, or else most words.
-    """
-    csv.field_size_limit(LONGEST_RECORD)
-    headers: list[tuple[tuple[int, int, int], int, str, int]] = []
-    for separator in SEPARATORS:
-        with suppress(csv.Error):
-            rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
-            for above, row in enumerate(islice(rows, MOST_ABOVE + 1)):
-                count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
-                headers.append(((count * (count > 1), words, len(row)), count, separator, above))
-                if count > 1:
-                    break
-    return max(headers, key=lambda header: header[0], default=(0, 0, SEPARATORS[0], 0))[1:]
 
 
 def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:

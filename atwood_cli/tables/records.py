@@ -1,12 +1,18 @@
-"""The rows of CSV, each with its text and its cells."""
+"""The records of CSV: a row, which may have several lines, at the separator that makes most headings."""
 
 import csv
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import suppress
 from io import StringIO
+from itertools import islice
 
 from ..numbers.text import counted
-from .sources import Unreadable
+from .sources import LONGEST_RECORD, Unreadable
 
+SEPARATORS = ",\t;"
+MOST_ABOVE = 40
+"""The most rows of titles above the headings."""
 QUOTATION = 'has a quotation mark that is left open or out of place; write it "like ""this"""'
 STRAY_RETURN = "has a carriage return without a line feed; save it with line feeds"
 
@@ -40,6 +46,25 @@ def records_of(text: str, separator: str, line: int = 1) -> Iterator[tuple[int, 
         why = STRAY_RETURN if "new-line" in str(error) else QUOTATION
         kind = GoesOn if "end of data" in str(error) else Unreadable
         raise kind(f"the row that begins in line {line} {why}") from None
+
+
+def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) -> tuple[int, str, int]:
+    """Return how many headings of a table are ``known``, its separator, and the number of rows above them.
+
+    The header is the first row with two known headings, or else with most words, by the separator that makes
+    most known headings, or else most words.
+    """
+    csv.field_size_limit(LONGEST_RECORD)
+    headers: list[tuple[tuple[int, int, int], int, str, int]] = []
+    for separator in SEPARATORS:
+        with suppress(csv.Error):
+            rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
+            for above, row in enumerate(islice(rows, MOST_ABOVE + 1)):
+                count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
+                headers.append(((count * (count > 1), words, len(row)), count, separator, above))
+                if count > 1:
+                    break
+    return max(headers, key=lambda header: header[0], default=(0, 0, SEPARATORS[0], 0))[1:]
 
 
 def wrong_width(cells: int, width: int, separator: str) -> str:

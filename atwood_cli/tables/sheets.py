@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from ..numbers.text import in_quotes, without_blanks
 from .cells import OWN_UNIT
-from .headings import ABOVE, Vocabulary, find_header, recognised, units_in
-from .records import records_of, wrong_width
+from .headings import ABOVE, Vocabulary, recognised, units_in
+from .records import find_header, records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
 from .workbooks import MOST_BYTES, opened_table
 
@@ -108,7 +108,9 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
             remarks.append(COMMENTS)
     text = "\n".join(lines)
     _, separator, start = find_header(text, known)
-    return Sheet(*_rows(text, separator, start), separator, [*remarks, *[ABOVE][:start]])
+    if start:
+        remarks.append(ABOVE)
+    return Sheet(*_rows(text, separator, start), separator, remarks)
 
 
 def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[str]]]:
