@@ -57,11 +57,13 @@ def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
     measured = np.bincount(run, weight * values) / total
     chi2 = sum_of_squares(np.sqrt(weight) * (values - measured[run]))
     dof = len(values) - len(counts)
-    factor, known_dof = (chi2 / dof, float(dof)) if dof and chi2 else (0.0, NORMAL_DOF)
-    if stated:  # the variance of a value, in units of what is stated
-        factor, known_dof = max(factor, 1.0), NORMAL_DOF
-    has_scatter = bool(chi2) or dof >= len(counts)  # few repeats that are equal may be rows copied
-    variance = factor / total + (runs.step**2 / 12 if has_scatter and not stated else 0.0)
+    rounding = runs.step**2 / 12
+    if stated:
+        variance, known_dof = max(chi2 / max(dof, 1), 1.0) / total, NORMAL_DOF
+    elif chi2:
+        variance, known_dof = chi2 / dof / total + rounding, float(dof)
+    else:  # few repeats that are equal may be rows copied
+        variance, known_dof = np.full(len(total), rounding * (dof >= len(counts))), NORMAL_DOF
     columns = {x: np.stack([runs.given[x][used], runs.u[x][used]]) for x in runs.given}
     m1, m2 = columns["m1"], columns["m2"]
     (l, u_l), (h, u_h) = np.where(m1[0] > m2[0], (m2, m1), (m1, m2))
