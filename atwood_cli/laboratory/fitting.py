@@ -194,15 +194,17 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         if "gravity" not in names and "delay" not in names:
             mistakes = _mistakes(runs, used, data, given.values["gravity"])
         if not separates(data, given.values, names):
-            verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
-            give = "".join(f", or give {GIVE[x]}" for x in names[1:] and names if x in GIVE)
-            raise CannotSeparate(f"the runs do not {verb} {' from '.join(what)}: {vary}{give}")
+            give, is_one = (f", or give {GIVE[x]}" for x in names if x in GIVE), len(names) == 1
+            why = f"determine {what[0]}" if is_one else f"separate {' from '.join(what)}"
+            vary = f"vary both m2 - m1 and m1 + m2 more{'' if is_one else ''.join(give)}"
+            raise CannotSeparate(f"the runs do not {why}: {vary}")
         fit = _with_results(runs, used, data, given, names)
     except CannotSeparate as error:
         message = mistakes[0][1] if mistakes else "".join(error.args)
         raise CannotSeparate(f"{message}{behind_an_error([*remarks, *runs.doubts])}") from None
     fit = fit._replace(shown=shown, outliers=[*_outliers(fit)] or mistakes)
-    causes = _held(fit) or _causes(fit)
+    freed = [*_freed(fit)]
+    causes = _held(fit) or [*filter(None, [_repair(fit, freed) or _unseen_delay(fit, freed)])]
     low, high = fit.results["gravity"].interval if "gravity" in names else EARTH
     if high < EARTH[0] or low > EARTH[1]:
         causes.append(f"gravity is not that of Earth, {EARTH[0]} to {EARTH[1]} m/s²: {CHECK}")
@@ -224,15 +226,14 @@ def _with_results(runs: Runs, used: Selection, data: Data, given: Conditions, na
             line = line_of(of_forces, data, values, names)
             message = _suspects(Fitted(runs, used, used, given, names, data, values, line)) or message
         raise CannotSeparate(f"{NO_FIT}: {message}") from None
-    results = dict[str, Result]()
-    fit = Fitted(runs, used, used, given, names, data, values, line, results)
-    by_runs = np.sqrt(line.covariance.diagonal()).tolist()
-    spread = _with_derived(dict(zip(names, by_runs, strict=True)), names, given)
+    spread, results = _with_derived(dict(zip(names, line.u, strict=True)), names, given), dict[str, Result]()
     for x, value in _with_derived(values, names, given).items():
         u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in ends))
         results[x] = Result(value, u, (value - line.times * u, value + line.times * u))
+    fit = Fitted(runs, used, used, given, names, data, values, line, results)
+    for x, (value, u, _) in results.items():
         if x in names and _is_negative(x, value, u, line):
-            message = _suspects(fit) or "; ".join(_causes(fit._replace(outliers=[(0, "")]))) or CHECK
+            message = _suspects(fit) or _repair(fit, [*_freed(fit)]) or CHECK
             raise CannotSeparate(f"{equation(x, value, u)} is negative: {message}")
     return fit
 
@@ -256,51 +257,66 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
 # What may be wrong in all runs
 
 
-def _causes(fit: Fitted) -> list[str]:
-    """Return a message if one more free quantity repairs a fit, or if sound runs cannot show a delay.
+def _freed(fit: Fitted) -> Iterator[Fitted]:
+    """Yield the fits of one more quantity, the last of their names, where the runs determine it, too."""
+    for name in (x for x in FITTED if x not in fit.names and (x != "delay" or fit.runs.kind == "time")):
+        names, known = [*fit.names, name], {x: fit.given.values[x] for x in fit.given.values if x != name}
+        if fit.line.dof > 1 and separates(fit.data, fit.given.values, names):
+            with suppress(CannotSeparate, ZeroDivisionError):
+                values, line = estimate(fit.data, known, names, fit.values)
+                yield fit._replace(names=names, values=values, line=line)
 
-    Each is freed in turn; what is fitted then must be physical. An F test judges what the best takes off χ²;
-    the known variance counts in it unless runs scatter more than that with the best, too. Named are all that
-    are as good as the best.
+
+def _is_physical(freed: Fitted) -> bool:
+    """Decide if what must be above 0 may be, and if a freed gravity is plausible."""
+    if freed.names[-1] == "gravity" and not PLAUSIBLE[0] < freed.values["gravity"] < PLAUSIBLE[1]:
+        return False
+    pairs = zip(freed.names, freed.line.u, strict=True)
+    return all(x == "delay" or freed.values[x] + 2 * u > 0 for x, u in pairs)
+
+
+def _repair(fit: Fitted, freed: Sequence[Fitted]) -> str:
+    """Say which freed quantities repair a fit, or "".
+
+    An F test judges what the best takes off χ²; the known variance counts in it unless runs scatter more than
+    that with the best, too. Named are all that are as good as the best.
     """
-    freed, delay = list[tuple[Line, str]](), ""
-    is_open = fit.runs.kind == "time" and "delay" not in fit.names
-    for name in (x for x in FITTED if x not in fit.names and (x != "delay" or is_open)):
-        names = [*fit.names, name]
-        known = {x: value for x, value in fit.given.values.items() if x != name}
-        with suppress(CannotSeparate, ZeroDivisionError):
-            if fit.line.dof < 2 or not separates(fit.data, fit.given.values, names):
-                continue
-            values, line = estimate(fit.data, known, names, fit.values)
-            spread = np.sqrt(line.covariance.diagonal()).tolist()
-            value, u = values[name], spread[-1]
-            is_physical = name != "gravity" or PLAUSIBLE[0] < value < PLAUSIBLE[1]
-            for x, u_x in zip(names, spread, strict=True):
-                is_physical &= x == "delay" or values[x] + 2 * u_x > 0
-            if is_physical and abs(value - fit.values[name]) > u:
-                freed.append((line, _cause(name, value, u, fit.given, names)))
-            if name == "delay":
-                is_open = line.times * u > WIDE_DELAY
-                delay = f" (`--find {','.join(names)}` gives {published(value, u)[0]} s)" * is_physical
-    if freed:
-        freed.sort(key=lambda pair: pair[0].chi2)
-        best = freed[0][0]
-        extra = fit.data.known_dof if (best.p_value or 0) >= SELDOM else 0.0
-        scale = max((best.chi2 + extra) / (best.dof + extra), TINY)
-        if fdtrc(1, best.dof + extra, max(fit.line.chi2 - best.chi2, 0) / scale) * len(freed) < RARE:
-            near = [message for line, message in freed if line.chi2 - best.chi2 < NEAR_BEST * scale]
-            which = "; they cannot tell which" if near[1:] else ""
-            also = ", which may explain outliers, too" if fit.outliers else ""
-            return [f"the runs fit better if {', or '.join(near)}{which}{also}"]
-    if not is_open or fit.outliers:
-        return []
-    wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
+    changes = (abs(one.values[one.names[-1]] - fit.values[one.names[-1]]) / one.line.u[-1] for one in freed)
+    causes = [one for one, change in zip(freed, changes, strict=True) if change > 1 and _is_physical(one)]
+    if not causes:
+        return ""
+    causes.sort(key=lambda cause: cause.line.chi2)
+    best = causes[0].line
+    extra = fit.data.known_dof if (best.p_value or 0) >= SELDOM else 0.0
+    scale = max((best.chi2 + extra) / (best.dof + extra), TINY)
+    if fdtrc(1, best.dof + extra, max(fit.line.chi2 - best.chi2, 0) / scale) * len(causes) >= RARE:
+        return ""
+    near = [_cause(one) for one in causes if one.line.chi2 - best.chi2 < NEAR_BEST * scale]
+    which = "; they cannot tell which" if len(near) > 1 else ""
+    also = ", which may explain outliers, too" if fit.outliers else ""
+    return f"the runs fit better if {', or '.join(near)}{which}{also}"
+
+
+def _unseen_delay(fit: Fitted, freed: Sequence[Fitted]) -> str:
+    """Say that sound runs cannot show a delay of all times, or ""."""
+    if fit.runs.kind != "time" or "delay" in fit.names or fit.outliers:
+        return ""
     late = "the runs cannot show whether all times are too long by a delay"
-    return [f"{late}{delay}; the results assume none. {wider}"]
+    if freed and freed[-1].names[-1] == "delay":  # the last that may be freed
+        names, value, line = freed[-1].names, freed[-1].values["delay"], freed[-1].line
+        if line.times * line.u[-1] <= WIDE_DELAY:
+            return ""
+        late += f" (`--find {','.join(names)}` gives {published(value, line.u[-1])[0]} s)" * _is_physical(
+            freed[-1]
+        )
+    wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
+    return f"{late}; the results assume none. {wider}"
 
 
-def _cause(name: str, value: float, u: float, given: Conditions, names: Sequence[str]) -> str:
+def _cause(freed: Fitted) -> str:
     """Say what a freed quantity would be, and how to fit it."""
+    name, given = freed.names[-1], freed.given
+    value, u = freed.values[name], freed.line.u[-1]
     if name == "delay":
         words = f"all times are {published(abs(value), u)[0]} s too {'long' if value > 0 else 'short'}"
     else:
@@ -309,7 +325,7 @@ def _cause(name: str, value: float, u: float, given: Conditions, names: Sequence
         words = f"{what} is {published(value, u)[0]} {unit}, not {instead}"
     typed = [x for x in QUANTITIES[name].given_by if given.inputs[x].given is not None]
     without = f"without `--{typed[0]}`: " if typed else ""
-    return f"{words} ({without}`--find {','.join(names)}`)"
+    return f"{words} ({without}`--find {','.join(freed.names)}`)"
 
 
 def _held(fit: Fitted) -> list[str]:
@@ -334,8 +350,7 @@ def _suspects(fit: Fitted) -> str:
     with suppress(CannotSeparate):
         if suspects and others.sum() > len(fit.names):
             values, line = estimate(as_data(fit.runs, others), fit.given.values, fit.names)
-            u = np.sqrt(line.covariance.diagonal())
-            if not any(_is_negative(x, values[x], u[i], line) for i, x in enumerate(fit.names)):
+            if not any(_is_negative(x, values[x], u, line) for x, u in zip(fit.names, line.u, strict=True)):
                 return "; ".join(message for _, message in suspects)
     return ""
 
@@ -367,7 +382,7 @@ def _outliers(fit: Fitted) -> list[tuple[int, str]]:
             where = [row if is_whole else cell]
         unit = parameter_of(runs.kind).unit
         value = f" = {format_number(float(runs.values[place]))} {unit}" if where == [cell] else ""
-        what = f"{in_words(*where)}{value} {'are' if where[1:] else 'is'}"
+        what = f"{in_words(*where)}{value} {'is' if len(where) == 1 else 'are'}"
         left_out = ",".join(map(str, where))
         why = f"{rounded(abs(distance))} standard deviations from what the others give"
         way = f"if it is a mistake, leave it out: `--without {left_out}`"

@@ -61,6 +61,11 @@ class Line(NamedTuple):
         return float(fdtrc(self.dof, self.known_dof, self.chi2 / self.dof)) if self.dof else None
 
     @property
+    def u(self) -> list[float]:
+        """Return the standard uncertainties of the coefficients."""
+        return [*map(float, np.sqrt(self.covariance.diagonal()))]
+
+    @property
     def times(self) -> float:
         """Return how many standard uncertainties half an interval of 95 % has."""
         return float(stdtrit(self.t_dof, 0.975))
