@@ -148,9 +148,9 @@ class Solution(Generic[T]):
 
     def __str__(self) -> str:
         """Return the page that ``atwood solve`` prints, without colours."""
-        from .output.scene_page import as_text
+        from .output.scene_page import page_as_text
 
-        return as_text(self._answers)
+        return page_as_text(self._answers)
 
     def __repr__(self) -> str:
         """Return the regime, and the usual quantities to six digits, or with their uncertainties."""

@@ -16,7 +16,7 @@ from atwood_cli.explain.derivation import Explanation, explain
 from atwood_cli.explain.equations import Derivation, Equation
 from atwood_cli.explain.given import inputs_in_words
 from atwood_cli.numbers.digits import is_infinite
-from atwood_cli.output.typeset import as_markdown, as_text, chain, written
+from atwood_cli.output.typeset import as_lines, as_markdown, chain, written
 from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
@@ -143,7 +143,7 @@ def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits
     check_results(found, scene, digits or 6)
     for equation in equations(found):
         check_numbers(equation, digits or 6)
-    assert [*as_text([], found, 80)]
+    assert [*as_lines([], found, 80)]
     check_handout("\n".join(as_markdown([], found)))
 
 
@@ -259,7 +259,7 @@ def test_a_lesson_derives_what_is_asked_for_and_what_that_needs(kind: str) -> No
 def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str) -> None:
     found = told_of(kind, 20)
     for width in (40, 80):
-        lines = [line for line, _ in as_text(["m1 = 1 kg"], found, width)]
+        lines = [line for line, _ in as_lines(["m1 = 1 kg"], found, width)]
         # A number is not parted from its unit, and twenty digits may then be too wide.
         assert all(len(line) <= width or re.fullmatch(r" *(\S*\d )?\S+", line) for line in lines)
         words = " ".join(lines).split()

@@ -53,7 +53,7 @@ CHANGES = [
     ("add an input", "test_contract", '""",\n    ),\n    "commands"', " brake"),
     ("add an input", "oracle.py", "    rests = 0 < (h - l) * g <= f",
      "    f += rational(scene.brake) if scene.brake else 0\n"),
-    ("add a form", "output/text.py", '    "csv": Form(',
+    ("add a form", "output/forms.py", '    "csv": Form(',
      '    "lines": Form(".lines", "Print lines.", lambda forms: print(len(forms.json())), True),\n'),
 ]
 """By the words of the row: in which file, before what, which line is added."""

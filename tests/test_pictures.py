@@ -15,7 +15,7 @@ import pytest
 
 from atwood_cli import solve
 from atwood_cli.output import figure
-from atwood_cli.output.text import Picture
+from atwood_cli.output.forms import Picture
 from atwood_cli.solver.quantities import NAMES
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Measured
 from atwood_cli.tradeoff.tradeoff_page import GREATEST, LEAST

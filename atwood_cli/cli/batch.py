@@ -6,7 +6,8 @@ from typing import Annotated
 from ..explain.conditions import read_condition
 from ..numbers.text import counted
 from ..output.files import STDOUT
-from ..output.text import FORMS, say, say_written
+from ..output.forms import FORMS
+from ..output.text import say, say_written
 from ..reading.inputs import read_whole
 from ..reading.names import read_names
 from ..solver.quantities import STANDARD

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from typing import Annotated
 
 from ..explain import contact as balance
+from ..output.forms import Destination, Picture, Report, show
 from ..output.scene_page import contact_record, print_contact
-from ..output.text import Destination, Picture, Report, say, show
+from ..output.text import say
 from ..reading.inputs import read_digits, read_scene
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
@@ -52,10 +53,12 @@ def contact(
         from ..output.scene_figure import save_scene
 
         save_scene(answers, picture, curves=True)
+    # What is drawn is not printed, too, but to a file that is asked for.
+    tables = picture is None or target.file is not None
     report = Report(
         json=lambda: contact_record(answers, arc),
         records=lambda: arc.points,
-        page=lambda: print_contact(answers, arc, tables=picture is None or target.file is not None),
+        page=lambda page: print_contact(page, answers, arc, tables),
         notes=lambda: arc.notes,
     )
     say(*show(report, target))

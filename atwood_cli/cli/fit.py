@@ -3,7 +3,8 @@
 from typing import Annotated
 
 from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
-from ..output.text import Destination, Picture, say, show
+from ..output.forms import Destination, Picture, show
+from ..output.text import say
 from ..reading.names import divided, read_names
 from ..solver.scene import SceneError
 from ..tables.sources import Unreadable, cannot_read

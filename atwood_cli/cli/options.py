@@ -12,7 +12,7 @@ from typing import Annotated, Any, get_args
 import typer
 
 from ..output.files import STDOUT, check_free
-from ..output.text import FORMS, Destination, Picture
+from ..output.forms import FORMS, Destination, Picture
 from ..solver.quantities import NAMES, QUANTITIES
 from ..solver.scene import INPUTS, MEASURED, SceneError, parameter_of
 

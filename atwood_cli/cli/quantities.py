@@ -5,7 +5,9 @@ from shutil import get_terminal_size
 from typing import Annotated
 
 from ..explain.given import VERSION
-from ..output.text import Destination, Report, say, show
+from ..output.forms import Destination, Report, show
+from ..output.page import Page
+from ..output.text import say
 from ..reading.names import read_names
 from ..solver.quantities import QUANTITIES, REGIMES
 from .options import DONE, OUTPUT, argument, with_options
@@ -42,10 +44,7 @@ def quantities(target: Destination, names: Names = None) -> int:
         rows = [row for row in rows if row[0] in wanted]
     records = [dict(zip(columns, row, strict=True)) for row in rows]
 
-    def print_page() -> None:
-        from ..output.page import Page
-
-        page = Page()
+    def print_page(page: Page) -> None:
         page.table([column.capitalize() for column in columns], [rows])
         if not names:
             page.say(ON_FRICTION)

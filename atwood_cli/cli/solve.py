@@ -5,8 +5,10 @@ from typing import Annotated
 
 from ..explain.conditions import failure, read_condition
 from ..explain.messages import reasons
+from ..output.forms import Destination, Picture, Report, show
+from ..output.page import Page
 from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_steps, print_table, record
-from ..output.text import Destination, Picture, Report, cell, say, show
+from ..output.text import cell, say
 from ..reading.answers import read_answers
 from ..reading.inputs import read_digits
 from ..reading.names import read_names
@@ -88,14 +90,21 @@ def solve(
         from ..output.scene_figure import save_scene
 
         save_scene(answers, picture)
+
+    def print_page(page: Page) -> None:
+        if explain:
+            print_steps(page, answers, names)
+        else:
+            print_table(page, answers, names or all_, budget)
+
     values = [cell(answers[name]) for name in names]
     report = Report(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
-        page=lambda: print_steps(answers, names) if explain else print_table(answers, names or all_, budget),
+        page=print_page,
         notes=lambda: notes_on_stderr(answers, names, values=not target.form),
         bare=[] if explain else values,
-        below=lambda: print_budget(answers, names) if budget else None,
+        below=(lambda page: print_budget(page, answers, names)) if budget else None,
     )
     aside = [*show(report, target), *(reasons(answers.to_six_digits, names) if explain else [])]
     failures = [why for condition in conditions if (why := failure(answers, condition))]

@@ -5,7 +5,8 @@ from functools import partial
 
 from ..explain.conditions import read_condition
 from ..numbers.text import counted
-from ..output.text import Destination, Picture, Report, say, show
+from ..output.forms import Destination, Picture, Report, show
+from ..output.text import say
 from ..reading.inputs import read_digits
 from ..reading.names import read_names
 from ..sweep.ranges import read_sweep
@@ -49,7 +50,7 @@ def sweep(
     swept_page = SweepPage(swept, names, precision, conditions)
     try:
         # What is drawn is not printed, too, but to a file that is asked for.
-        page = partial(swept_page.page, table=picture is None or target.file is not None)
+        page = partial(swept_page.print, table=picture is None or target.file is not None)
         aside = show(Report(swept_page.json, swept_page.records, page, swept_page.notes), target)
     except KeyboardInterrupt:
         if swept_page.done:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from itertools import chain
 from typing import Annotated
 
-from ..output.text import Destination, Picture, Report, show
+from ..output.forms import Destination, Picture, Report, show
 from ..reading.inputs import read_whole
 from ..reading.names import read_names
 from .options import DONE, FIGURE, check_figure, option, results, with_options
@@ -67,7 +67,7 @@ def tradeoff(
     report = Report(
         json=lambda: tradeoff_page.record(measured, count),
         records=list,
-        page=lambda: tradeoff_page.print_table(measured, count),
+        page=lambda page: tradeoff_page.print_table(page, measured, count),
     )
     show(report, target)
     return DONE

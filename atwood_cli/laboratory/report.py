@@ -1,6 +1,7 @@
 """A fit as sentences, tables, JSON and CSV: what the runs determine, their outliers, what to vary."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from itertools import chain
 from math import log10, sqrt
 from typing import Any
@@ -10,8 +11,9 @@ import numpy as np
 from ..explain.given import inputs_in_words
 from ..numbers.digits import format_number
 from ..numbers.text import counted, sentence
-from ..output.page import Page, aligned
-from ..output.text import Report, cell
+from ..output.forms import Report
+from ..output.page import Page
+from ..output.text import aligned, cell
 from ..solver.scene import parameter_of
 from .columns import MEASURED
 from .estimate import ROUNDING, as_data, expected
@@ -140,7 +142,8 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
         each = ((x, *result[:2], *result.interval, QUANTITIES[x].unit) for x, result in results.items())
         rows = [dict(zip(names, result, strict=True)) for result in each]
     bare = [cell(record[name]) for name in only]
-    return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, public.runs), lambda: sentences, bare)
+    page = partial(_print_page, fit=fit, runs=public.runs)
+    return Report(lambda: asked, lambda: rows, page, lambda: sentences, bare)
 
 
 def _correlation(covariance: Any) -> float | None:
@@ -169,9 +172,9 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
     ]
 
 
-def _print_page(fit: Fitted, runs: Sequence[Mapping[str, Any]]) -> None:
+def _print_page(page: Page, fit: Fitted, runs: Sequence[Mapping[str, Any]]) -> None:
     """Print the conditions, the runs, what there is to say, and the results."""
-    page, kind, (first, *others) = Page(), fit.runs.kind, notes_of(fit)
+    kind, (first, *others) = fit.runs.kind, notes_of(fit)
     page.say(conditions(fit))
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"

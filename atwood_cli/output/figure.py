@@ -19,7 +19,8 @@ from xml.sax.saxutils import escape
 from ..solver.quantities import QUANTITIES
 from ..solver.scene import INPUTS, SceneError
 from .files import check_free, written_beside
-from .text import Picture, say_written, wrapped
+from .forms import Picture
+from .text import say_written, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,7 +85,7 @@ def check_picture(picture: Picture) -> None:
 
 
 @contextmanager
-def page(picture: Picture, above: Sequence[str], below: str = "", panels: int = 1) -> Iterator["Figure"]:
+def drawing(picture: Picture, above: Sequence[str], below: str = "", panels: int = 1) -> Iterator["Figure"]:
     """Yield a figure with room for so many panels, below each other, save it and say so. Raises OSError.
 
     The sentences ``above`` are written unless it is bare, or has symbols alone. In the file, the first of

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from ..numbers.text import counted
 from .files import printable
-from .text import IN_MARKDOWN, markdown_table, wrapped
+from .text import is_number, markdown_table, wrapped
 
 Part = TypeVar("Part")
 Groups = Sequence[Sequence[Sequence[str]]]
@@ -23,10 +23,11 @@ PIPE_WIDTH = 80
 class Page:
     """A printer of tables and sentences, to a terminal or to a pipe, which takes any width."""
 
-    def __init__(self, is_plain: bool = False) -> None:
-        """Make a page for standard output, without colours if it ``is_plain``."""
+    def __init__(self, is_plain: bool = False, is_markdown: bool = False) -> None:
+        """Make a page for standard output, without colours if it ``is_plain``, or as Markdown."""
         from rich.console import Console
 
+        self.is_markdown = is_markdown
         # rich itself would take COLUMNS=0 at its word, and any dumb terminal to be 80 columns wide.
         width, height = get_terminal_size()
         # FORCE_COLOR concerns the terminal, not the file of --output.
@@ -40,7 +41,7 @@ class Page:
 
     def say(self, *sentences: str, style: str = "") -> None:
         """Print sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
-        if IN_MARKDOWN.get():
+        if self.is_markdown:
             print("".join(f"{printable(words)}\n\n" for words in sentences), end="")
             return
         for words in sentences:
@@ -60,7 +61,7 @@ class Page:
         no room follow below, with the first ``keys`` columns again. Numbers and names are never broken.
         """
         rows = [[printable(word, keep="") for word in row] for row in chain.from_iterable(groups)]
-        if IN_MARKDOWN.get():
+        if self.is_markdown:
             print(*markdown_table([columns, *rows]), sep="\n", end="\n\n")
             return
         heads, cells = [printable(head) for head in columns], list(zip(*rows, strict=True))
@@ -107,7 +108,7 @@ def _widest(head: str, cells: Iterable[str]) -> int:
 
 def _narrowest(head: str, cells: Sequence[str]) -> int:
     """Return the least width of a column: only words may be wrapped, and only at blanks."""
-    if any(map(_is_number, cells)):
+    if any(map(is_number, cells)):
         return _widest(head, cells)
     return _widest(head, chain.from_iterable(cell.split(" ") for cell in cells))
 
@@ -123,21 +124,6 @@ def _blocks(widths: Sequence[int], keys: int, room: int) -> list[list[int]]:
             block = first
         blocks.append([*block, column])
     return blocks
-
-
-def aligned(numbers: Iterable[str]) -> list[str]:
-    """Return numbers with their decimal points below each other; words are left as they are."""
-    numbers = list(numbers)
-    point = max(map(_integer_part, numbers), default=0)
-    return [" " * (point - _integer_part(cell)) + cell if _is_number(cell) else cell for cell in numbers]
-
-
-def _is_number(value: str) -> bool:
-    return value.lstrip("(+-.")[:1].isdigit()
-
-
-def _integer_part(value: str) -> int:
-    return len(value.partition(" ")[0].partition(".")[0].partition("e")[0]) if _is_number(value) else 0
 
 
 @contextmanager

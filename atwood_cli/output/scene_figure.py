@@ -18,8 +18,20 @@ from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..solver import arc
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
-from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_picture, page, typeset, write_beside
-from .text import Picture
+from .figure import (
+    BLUE,
+    FAINT,
+    GREEN,
+    INK,
+    ORANGE,
+    PURPLE,
+    RED,
+    check_picture,
+    drawing,
+    typeset,
+    write_beside,
+)
+from .forms import Picture
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -71,7 +83,7 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
     given = inputs_with_effect(decided.scene, answers.uncertain)
     above = [", ".join(given.values()), unmarked(verdict(answers))]
     panels = 2 if curves else 1
-    with page(picture, above, " ".join(below), panels) as figure:
+    with drawing(picture, above, " ".join(below), panels) as figure:
         machine, *more = figure.subplots(panels, height_ratios=[1.6, 1][:panels], squeeze=False).flat
         machine.axis("off")
         machine.set_aspect("equal", adjustable="datalim")

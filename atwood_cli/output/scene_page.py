@@ -4,7 +4,6 @@ import sys
 from collections.abc import Sequence
 from decimal import Decimal
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 from ..explain.contact import Contact
 from ..explain.given import VERSION, inputs_with_effect, scene_record, terms_record
@@ -14,10 +13,8 @@ from ..solver.answers import Answers
 from ..solver.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..solver.scene import with_unit
 from .files import printable
-from .text import IN_MARKDOWN, cell
-
-if TYPE_CHECKING:
-    from .page import Page
+from .page import Page
+from .text import aligned, cell
 
 
 def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> dict[str, object]:
@@ -104,12 +101,10 @@ COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 
 def print_table(
-    answers: Answers, only: Sequence[str] | bool = False, budget: bool = False, page: "Page | None" = None
+    page: Page, answers: Answers, only: Sequence[str] | bool = False, budget: bool = False
 ) -> None:
     """Print the scene, the verdict, the main quantities or ``only`` some (True: all), notes, the budget."""
-    from .page import Page
-
-    answers, page = answers.to_six_digits, page or Page()
+    answers = answers.to_six_digits
     names = main_quantities(answers)
     if only:
         names = [name for name in answers.names[1:] if only is True or name in only]
@@ -124,10 +119,10 @@ def print_table(
         lacking.pop("friction_force", None)
     page.say(*map(unmarked, remarks(answers)), *reasons(answers, list(lacking)))
     if budget:
-        print_budget(answers, names, page)
+        print_budget(page, answers, names)
 
 
-def _print_head(page: "Page", answers: Answers, measured: str = "") -> None:
+def _print_head(page: Page, answers: Answers, measured: str = "") -> None:
     """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
     given = inputs_with_effect(answers.decided.scene, answers.uncertain)
     page.say(", ".join(given.values()))
@@ -136,21 +131,17 @@ def _print_head(page: "Page", answers: Answers, measured: str = "") -> None:
     page.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.decided.regime]}")
 
 
-def as_text(answers: Answers) -> str:
+def page_as_text(answers: Answers) -> str:
     """Return the page as text without colours, in the width and the characters of standard output."""
-    from .page import Page
-
     page = Page(is_plain=True)
     with page.console.capture() as captured:
-        print_table(answers, page=page)
+        print_table(page, answers)
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     return captured.get().rstrip("\n").encode(encoding, "replace").decode(encoding)
 
 
 def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     """Return the cells of the table: a row for each quantity that exists, by group."""
-    from .page import aligned
-
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
@@ -178,11 +169,9 @@ def _with_uncertainty(answers: Answers, name: str) -> str:
     return with_uncertainty(answers.rounded(name, round_), round_(u))[0]
 
 
-def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = None) -> None:
+def print_budget(page: Page, answers: Answers, names: Sequence[str]) -> None:
     """Print each uncertain input's share of the variance of each quantity."""
-    from .page import Page, aligned
-
-    page, names = page or Page(), [name for name in names if name != "regime"]
+    names = [name for name in names if name != "regime"]
     budgets = {name: shares for name in names if (shares := answers.budget(name, rounding_to_place(-1)))}
     if not budgets:
         return
@@ -197,21 +186,19 @@ LEAST_WIDTH, MOST_WIDTH = 40, 80
 """The width of a derivation, in characters."""
 
 
-def print_steps(answers: Answers, names: Sequence[str]) -> None:
+def print_steps(page: Page, answers: Answers, names: Sequence[str]) -> None:
     """Print the derivation of these quantities, or of all: in the columns of a terminal, or as Markdown."""
     from ..explain.derivation import explain
-    from .page import Page
-    from .typeset import as_markdown, as_text
+    from .typeset import as_lines, as_markdown
 
     given = inputs_with_effect(answers.decided.scene).values()
     explanation = explain(answers, names)
-    if IN_MARKDOWN.get():
+    if page.is_markdown:
         for line in as_markdown(given, explanation):
             print(printable(line))
         return
-    page = Page()
     width = max(LEAST_WIDTH, min(MOST_WIDTH, page.room or MOST_WIDTH))
-    for line, style in as_text(given, explanation, width):
+    for line, style in as_lines(given, explanation, width):
         page.line(line, style)
 
 
@@ -244,11 +231,8 @@ def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
     }
 
 
-def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
+def print_contact(page: Page, answers: Answers, arc: Contact, tables: bool) -> None:
     """Print the scene, the verdict, with ``tables`` the forces along the arc and their sum, and the notes."""
-    from .page import Page, aligned
-
-    page = Page()
     _print_head(page, answers)
     if not tables:
         page.say(*arc.notes)

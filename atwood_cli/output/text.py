@@ -1,18 +1,17 @@
-"""Results as text, without rich: cells, JSON, CSV, and sentences on stderr."""
+"""Text without rich: cells, lines, tables of Markdown, JSON, and sentences on stderr."""
 
 import json
 import os
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from contextvars import ContextVar
 from decimal import Decimal
-from typing import Any, NamedTuple, TextIO
+from typing import Any, TextIO
 
 from ..numbers.digits import format_number, is_infinite
 from ..numbers.text import LONGEST_NAME, shortened
-from .files import Stdout, printable, stdout_into
+from .files import printable
 
 
 def say(*messages: str) -> None:
@@ -68,58 +67,6 @@ def drop(stream: TextIO) -> None:
         os.close(nowhere)
 
 
-class Report(NamedTuple):
-    """A result in all forms that may be asked for. Each is made when it is asked for.
-
-    ``json`` returns the record, and ``records`` the lines of CSV. ``page`` prints the page. ``bare`` are the
-    values that --only names, and ``below`` prints the lines after them. ``notes`` are for forms without any.
-    """
-
-    json: Callable[[], Mapping[str, object]]
-    records: Callable[[], Iterable[Mapping[str, object]]]
-    page: Callable[[], None]
-    notes: Callable[[], Sequence[str]] = list
-    bare: Sequence[str] = ()
-    below: Callable[[], None] = lambda: None
-
-
-class Form(NamedTuple):
-    """A form for programs: its files' suffix, its option's help, its printer, whether it has the notes."""
-
-    suffix: str
-    help: str
-    write: Callable[[Report], None]
-    has_notes: bool
-
-
-def _write_json(report: Report) -> None:
-    sys.stdout.writelines(as_json(report.json()))
-    print()
-
-
-def _write_csv(report: Report) -> None:
-    """Print a line of names, and a line for each record when it comes."""
-    from csv import writer
-
-    table = writer(Stdout(), lineterminator="\n")
-    for number, record in enumerate(report.records()):
-        if not number:
-            table.writerow(record)
-        table.writerow(map(cell, record.values()))
-
-
-IN_MARKDOWN = ContextVar("markdown", default=False)
-"""Whether pages are printed as Markdown."""
-
-
-def _write_markdown(report: Report) -> None:
-    token = IN_MARKDOWN.set(True)
-    try:
-        report.page()
-    finally:
-        IN_MARKDOWN.reset(token)
-
-
 def markdown_table(rows: Iterable[Sequence[str]]) -> Iterator[str]:
     """Yield the lines of a table in Markdown, whose first row is its header."""
     for number, row in enumerate(rows):
@@ -127,53 +74,6 @@ def markdown_table(rows: Iterable[Sequence[str]]) -> Iterator[str]:
         yield f"| {' | '.join(cells)} |"
         if not number:
             yield f"|{' --- |' * len(row)}"
-
-
-FORMS = {
-    "json": Form(".json", "Print JSON.", _write_json, True),
-    "csv": Form(".csv", "Print CSV, with a line of names first.", _write_csv, False),
-    "markdown": Form(".md", "Print the page as Markdown.", _write_markdown, True),
-}
-"""The forms, by the name of their option. Without such an option a page is printed, or bare values."""
-
-
-class Destination(NamedTuple):
-    """The form of a result, "" for a page, and the file that it goes to, None for stdout."""
-
-    form: str = ""
-    file: str | None = None
-    force: bool = False
-
-
-class Picture(NamedTuple):
-    """The file of a picture, and whether it is without a title, or has only symbols, without numbers."""
-
-    file: str
-    force: bool = False
-    bare: bool = False
-    symbols: bool = False
-
-
-def show(report: Report, target: Destination) -> Sequence[str]:
-    """Print a result in a form, as bare values or as a page, whole or not at all. Raises OSError.
-
-    Returns the notes if the form has no place for them, as CSV and bare values: they are to be said on
-    stderr, after the result, which is flushed by then.
-    """
-    form = FORMS.get(target.form)
-    with stdout_into(target.file, target.force):
-        if form:
-            form.write(report)
-        elif report.bare:
-            if any(report.bare):  # an empty line for each value that does not exist
-                print(*report.bare, sep="\n")
-            report.below()
-        else:
-            report.page()
-        sys.stdout.flush()
-    if target.file is not None:
-        say_written(target.file)
-    return report.notes() if report.bare or (form and not form.has_notes) else ()
 
 
 def as_json(value: object, indent: str = "\n") -> Iterator[str]:
@@ -219,3 +119,18 @@ def in_html(words: str) -> str:
     from html import escape
 
     return f"<pre>{escape(words)}</pre>"
+
+
+def aligned(numbers: Iterable[str]) -> list[str]:
+    """Return numbers with their decimal points below each other; words are left as they are."""
+    numbers = list(numbers)
+    point = max(map(_integer_part, numbers), default=0)
+    return [" " * (point - _integer_part(cell)) + cell if is_number(cell) else cell for cell in numbers]
+
+
+def is_number(value: str) -> bool:
+    return value.lstrip("(+-.")[:1].isdigit()
+
+
+def _integer_part(value: str) -> int:
+    return len(value.partition(" ")[0].partition(".")[0].partition("e")[0]) if is_number(value) else 0

@@ -120,7 +120,7 @@ def in_math(words: str) -> str:
 # The page
 
 
-def as_text(given: Iterable[str], explanation: Explanation, width: int) -> Iterator[tuple[str, str]]:
+def as_lines(given: Iterable[str], explanation: Explanation, width: int) -> Iterator[tuple[str, str]]:
     """Yield lines of at most that width, each with its style; a longer word has a line of its own.
 
     ``given`` has each input in words, as "m1 = 1 kg".

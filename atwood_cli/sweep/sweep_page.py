@@ -11,8 +11,8 @@ from ..explain.conditions import Condition, Failures
 from ..explain.given import VERSION, scene_record
 from ..explain.messages import on_units, reasons_in, unmarked
 from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
-from ..output.page import Page, aligned, progress
-from ..output.text import cell
+from ..output.page import Page, progress
+from ..output.text import aligned, cell
 from ..solver.answers import Answers
 from ..solver.quantities import QUANTITIES, STANDARD
 from ..solver.scene import with_unit
@@ -80,12 +80,12 @@ class SweepPage:
             points = {range_.name: range_.printed(row.at[range_.name]) for range_ in self.sweep.ranges}
             yield points | {name: row.values[name] for name in self.names}
 
-    def page(self, table: bool = True) -> None:
+    def print(self, page: Page, table: bool = True) -> None:
         """Print the scene, its regimes, values that all rows share, and the notes.
 
         With ``table``, a table has a row for each point. Columns without a value are left out.
         """
-        page, sweep, names = Page(), self.sweep, list(self.columns)
+        sweep, names = self.sweep, list(self.columns)
         if sweep.scene.M is None and sweep.scene.mu is not None and PULLEY not in names:
             names.append(PULLEY)
         rows = list(self._rows(names, self.digits or SHOWN_DIGITS))

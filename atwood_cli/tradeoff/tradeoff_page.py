@@ -8,9 +8,9 @@ from operator import attrgetter
 
 from ..explain.given import VERSION
 from ..numbers.digits import format_number
-from ..output.figure import BLUE, GREEN, PURPLE, RED, page
+from ..output.figure import BLUE, GREEN, PURPLE, RED, drawing
+from ..output.forms import Picture
 from ..output.page import Page
-from ..output.text import Picture
 from .measure import EXACT_DIGITS, MOST_ROWS, SEED, SETTINGS, Measured
 
 LEGEND = (
@@ -30,7 +30,7 @@ def record(measured: Sequence[Measured], scenes: int) -> dict[str, object]:
     return {"version": VERSION, "seed": SEED, "scenes": scenes, "settings": settings}
 
 
-def print_table(measured: Sequence[Measured], scenes: int) -> None:
+def print_table(page: Page, measured: Sequence[Measured], scenes: int) -> None:
     """Print a column for each setting, with its time, error and share of wrong regimes on each family."""
     groups = []
     for family, group in groupby(measured, attrgetter("family")):
@@ -48,17 +48,16 @@ def print_table(measured: Sequence[Measured], scenes: int) -> None:
     widths = [max(map(len, column)) for column in zip(*chain(*groups), strict=True)]
     for row in chain(*groups):
         row[1:] = map(str.rjust, row[1:], widths[1:])
-    table = Page()
-    table.say(f"{scenes} scenes of each family, seed {SEED}")
-    table.table(["Family", *SETTINGS], groups)
-    table.say(*LEGEND)
+    page.say(f"{scenes} scenes of each family, seed {SEED}")
+    page.table(["Family", *SETTINGS], groups)
+    page.say(*LEGEND)
 
 
 def save(measured: Sequence[Measured], picture: Picture) -> None:
     """Draw errors against times to a file, for each family. Raises OSError."""
     families = {family: [*group] for family, group in groupby(measured, attrgetter("family"))}
     title = "Worst error of a scene, in units in the last place of a double (ulp), against its time"
-    with page(picture, [title]) as figure:
+    with drawing(picture, [title]) as figure:
         panels = figure.subplots(1, len(families), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (family, settings) in zip(panels, families.items(), strict=True):
             axes.set(title=family, xscale="log", yscale="log", xmargin=0.2)
