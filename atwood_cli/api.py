@@ -170,16 +170,18 @@ class Solution(Generic[T]):
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return bool(self._answers.given == other._answers.given)
+        one, two = ((x.decided.scene, x.digits, x.uncertain) for x in (self._answers, other._answers))
+        return one == two
 
     def __hash__(self) -> int:
         return hash(self.scene)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _again, (type(self._answers), self._answers.given)
+        answers = self._answers
+        return _again, (type(answers), answers.decided.scene, answers.digits, answers.inputs)
 
 
-def _again(kind: type[Answers], given: tuple[Any, ...]) -> Solution[Any]:
+def _again(kind: type[Answers], *given: Any) -> Solution[Any]:
     """Make a copied or pickled solution, which is computed anew when it is read."""
     return Solution(kind(*given))
 

@@ -170,8 +170,10 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
         "b": decided.axle_mass,
     }
     known |= {"f_axle": decided.axle_friction}
-    for x, (number, terms) in scene.terms:
-        known[f"{terms.symbol}{x[1:] if x in MASSES else ''}"] = number * (decided.sign if x == "a" else 1)
+    for x, terms in scene.terms:
+        known[f"{terms.symbol}{x[1:] if x in MASSES else ''}"] = scene.number_of(x) * (
+            decided.sign if x == "a" else 1
+        )
     env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}
     env |= {"π": +mp.pi, "φ": wrap if scene.wrap.unit == "rad" else mp.radians(wrap), "|a|": abs(env["a"])}
     if scene.mu == 0 or scene.mu_k == 0:
@@ -283,8 +285,7 @@ IN_MATHEMATICS = re.compile(r"\$\$.*?\$\$|\$.*?\$", re.DOTALL)
 
 def handout(given: Any) -> str:
     answers = read_answers(given, None)
-    decided = answers.decided
-    return "\n".join(as_markdown(inputs_in_words(decided.scene).values(), explain(answers)))
+    return "\n".join(as_markdown(inputs_in_words(answers).values(), explain(answers)))
 
 
 def check_handout(page: str) -> None:

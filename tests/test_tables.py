@@ -23,7 +23,7 @@ from atwood_cli.laboratory.columns import VOCABULARY
 from atwood_cli.laboratory.runs import Runs, read_runs
 from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.quantities import NAMES
-from atwood_cli.solver.scene import INPUTS
+from atwood_cli.solver.scene import INPUTS, Unit
 from atwood_cli.tables import cells, headings, sheets, sources
 from atwood_cli.tables.sources import Unreadable
 
@@ -94,7 +94,7 @@ def test_a_heading_that_may_mean_an_input_is_refused(words: str) -> None:
             read_columns([*({"m1", "m2"} - {name}), heading], Wanted(NAMES))
 
 
-GRAMS = headings.Heading(0, "m1 (g)", "m1", unit="g", factor=Fraction(1, 1000))
+GRAMS = headings.Heading(0, "m1 (g)", "m1", unit="g", read=Unit("g", Fraction(1, 1000)))
 
 
 @pytest.mark.parametrize(
@@ -113,7 +113,8 @@ GRAMS = headings.Heading(0, "m1 (g)", "m1", unit="g", factor=Fraction(1, 1000))
 )
 def test_cells_are_read_exactly(cell: str, comma: bool, value: str, uncertainty: str) -> None:
     want = (Fraction(value), Fraction(uncertainty), cell) if value else None
-    assert cells.read_cell(GRAMS, [cell], comma) == want
+    read = cells.read_cell(GRAMS, [cell], comma)
+    assert (read and (read.number, read.uncertainty, read.given)) == want
 
 
 # Runs

@@ -17,7 +17,7 @@ from atwood_cli import SceneError, solve
 from atwood_cli.numbers.digits import rounding_to_uncertainty, to_digits, with_uncertainty
 from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.decisions import Decisions
-from atwood_cli.solver.scene import InTerms
+from atwood_cli.solver.scene import Input
 
 from .conftest import many
 from .tools.running import LOADED, called, process
@@ -41,7 +41,8 @@ TEXTS: dict[str, tuple[str | int, str | int]] = {
 
 @pytest.mark.parametrize("text", TEXTS)
 def test_text(text: str) -> None:
-    assert read_input("m1", text) == (*(Fraction(x) for x in TEXTS[text]), text)
+    read = read_input("m1", text)
+    assert (read.number, read.uncertainty, read.given) == (*map(Fraction, TEXTS[text]), text)
 
 
 # Against steps that `solve` makes
@@ -75,19 +76,20 @@ def drawn(rng: Random) -> dict[str, str]:
 
 def ends_of(x: str, given: Mapping[str, Any], step: Fraction) -> dict[str, Any]:
     """What is given, with an input so much more, but not below 0, and mu_k at most mu."""
-    value = given[x]
-    number = min(max(getattr(value, "number", value) + step, 0), given["mu"] if x == "mu_k" else inf)
-    there = {**given, x: value._replace(number=number) if hasattr(value, "number") else number}
-    return there | ({"mu_k": min(given["mu_k"], number)} if x == "mu" and given.get("mu_k") else {})
+    number = min(max(given[x].number + step, 0), given["mu"].number if x == "mu_k" else inf)
+    there = {**given, x: given[x]._replace(number=number)}
+    least = min(given["mu_k"].number, number) if x == "mu" and "mu_k" in given else None
+    return there if least is None else {**there, "mu_k": given["mu_k"]._replace(number=least)}
 
 
-def as_text(value: Any) -> Any:
-    """What was given in other terms, as it is typed."""
-    return f"{value.number}{value.unit}" if isinstance(value, InTerms) else value
+def as_typed(read: Input) -> Any:
+    """A number in the unit that it was read in, which is one of the SI."""
+    in_si = not (read.unit.terms or read.unit.symbol == "rad")
+    return read.number if in_si else f"{read.number}{read.unit.symbol}"
 
 
 def solved(given: Mapping[str, Any]) -> Any:
-    return solve(**{x: as_text(value) for x, value in given.items()}, digits=70)
+    return solve(**{x: as_typed(read) for x, read in given.items()}, digits=70)
 
 
 def solved_if_valid(given: Mapping[str, Any]) -> Any:
@@ -105,13 +107,12 @@ def test_an_uncertainty_is_made_of_steps_that_solve_makes() -> None:
         for _ in range(many(160)):
             typed = drawn(rng)
             read = {x: read_input(x, value) for x, value in typed.items()}
-            given = {x: one.value for x, one in read.items()}
-            here, found = solved(given), solve(**typed, digits=15)
+            here, found = solved(read), solve(**typed, digits=15)
             ends = {}
             for x, one in read.items():
                 if one.uncertainty:
                     off = (-one.uncertainty, one.uncertainty)
-                    ends[x] = [solved_if_valid(ends_of(x, given, step)) for step in off]
+                    ends[x] = [solved_if_valid(ends_of(x, read, step)) for step in off]
             regimes += any(end and end.regime != here.regime for pair in ends.values() for end in pair)
             for name, u in found.uncertainty.items():
                 values: Any = [[getattr(end, name, None) for end in pair] for pair in ends.values()]

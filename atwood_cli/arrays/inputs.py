@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..reading.inputs import is_missing
-from ..solver.scene import DEFAULTS, INERTIA_FACTORS, INPUTS, MASSES, SceneError, Terms
+from ..solver.scene import DEFAULTS, INERTIA_FACTORS, INPUTS, MASSES, SceneError, Terms, in_own_terms
 from .doubles import WINDOW, Column
 from .plan import COLUMN, Pattern
 
@@ -144,21 +144,20 @@ class Group(NamedTuple):
     """Whether an input is beyond the window of `doubles`."""
 
 
-def _kinds(name: str, given: Mapping[str, GivenColumn], terms: Mapping[str, Terms]) -> NDArray[np.int_]:
+def _kinds(name: str, given: Mapping[str, GivenColumn], own: Mapping[str, Column]) -> NDArray[np.int_]:
     """Return the kind of each number of an input, or the one kind of all, without dimension.
 
     The equations take I as the mass I/R² and the axle's friction as the mass f/g. So these must be within the
-    window, as must an input in its own terms.
+    window, as must an input in its ``own`` terms.
     """
     (doubles, absent), (low, high) = given[name], WINDOW
     if absent is not None and absent.all():
         return np.array(Kind.ABSENT)
-    own = _own(name, given, terms)
-    sizes = [doubles] if own is doubles else [doubles, own]
+    sizes = [doubles] if own[name] is doubles else [doubles, own[name]]
     if name == "I":
-        sizes.append(doubles / given["R"].doubles / given["R"].doubles)
+        sizes.append(doubles / own["R"] / own["R"])
     if name == "axle":
-        sizes.append(own / given["g"].doubles)
+        sizes.append(own[name] / own["g"])
     if absent is None and all(low < size.min() and size.max() < high for size in sizes):
         return np.array(Kind.USUAL)
     is_kind = [
@@ -176,23 +175,19 @@ def _kinds(name: str, given: Mapping[str, GivenColumn], terms: Mapping[str, Term
     return kinds
 
 
-def _own(name: str, given: Mapping[str, GivenColumn], terms: Mapping[str, Terms]) -> Column:
-    """Return an input in its own terms, in doubles."""
-    doubles = given[name].doubles
-    return terms[name].own(doubles, given[terms[name].by].doubles) if name in terms else doubles
-
-
-def _heavier(given: Mapping[str, GivenColumn], terms: Mapping[str, Terms], size: int) -> NDArray[np.int_]:
+def _heavier(
+    given: Mapping[str, GivenColumn], own: Mapping[str, Column], terms: Mapping[str, Terms], size: int
+) -> NDArray[np.int_]:
     """Return 1 where m2 is the heavier mass, -1 where m1 is, else 0."""
     if terms.get("m1") == terms.get("m2"):
         m1, m2 = (given[name].doubles for name in MASSES)
         return np.array(1) if (is_m2 := m2 > m1).all() else 1 * is_m2 - (m2 < m1)
-    m1, m2 = (np.broadcast_to(_own(name, given, terms), size) for name in MASSES)
+    m1, m2 = (np.broadcast_to(own[name], size) for name in MASSES)
     order = 1 * (m2 > m1) - (m2 < m1)
+    of_masses = {name: terms[name] for name in MASSES if name in terms}
     for row in np.flatnonzero(np.abs(m2 - m1) <= NEARLY_EQUAL * m1).tolist():  # a weight beside a mass
-        exact = {name: _exact(name, given[name], row) for name in (*MASSES, "g")}
-        mass_1, mass_2 = (terms[x].own(exact[x], exact["g"]) if x in terms else exact[x] for x in MASSES)
-        order[row] = (mass_2 > mass_1) - (mass_2 < mass_1)
+        exact = in_own_terms({name: _exact(name, given[name], row) for name in (*MASSES, "g")}, of_masses)
+        order[row] = (exact["m2"] > exact["m1"]) - (exact["m2"] < exact["m1"])
     return order
 
 
@@ -204,8 +199,9 @@ def _exact(name: str, given: GivenColumn, row: int) -> Fraction:
 def groups(given: Mapping[str, GivenColumn], size: int, terms: Mapping[str, Terms]) -> Iterator[Group]:
     """Yield the rows of a chunk, grouped by their status and pattern."""
     mu, mu_k = (given[name].doubles for name in ("mu", "mu_k"))
-    columns = {name: _kinds(name, given, terms) for name in given}
-    heavier = _heavier(given, terms, size)
+    own = in_own_terms({name: column.doubles for name, column in given.items()}, terms)
+    columns = {name: _kinds(name, given, own) for name in given}
+    heavier = _heavier(given, own, terms, size)
     mu_k_above = mu_k > mu  # false where one is not given, as it is NaN there
     # Rows differ by the digits of a key, each with its base: kinds, the heavier mass, a mu_k above mu.
     digits: list[tuple[int, NDArray[Any]]] = [(len(Kind), kinds) for kinds in columns.values() if kinds.ndim]

@@ -44,7 +44,7 @@ from ..numbers.settling import settle
 from ..solver.decisions import Decisions, LimitingCase
 from ..solver.machine import Machine
 from ..solver.quantities import REGIMES, Accuracy, Undetermined
-from ..solver.scene import INPUTS, Angle, Scene, Terms
+from ..solver.scene import INPUTS, Angle, Scene, Terms, in_own_terms
 from .doubles import DOUBLES, Doubles, NoProgram, equal, less, proven_double
 from .pairs import PAIRS
 from .program import Program
@@ -78,8 +78,7 @@ class Pattern(NamedTuple):
             for name, value in zip(INPUTS, self.inputs, strict=True)
         }
         fields["wrap"] = Angle(fields["wrap"])
-        fields |= {name: terms.own(fields[name], fields[terms.by]) for name, terms in self.terms}
-        return Scene(**fields)
+        return Scene(**in_own_terms(fields, dict(self.terms)))
 
 
 Branches = frozenset[tuple[str, bool]]

@@ -245,7 +245,7 @@ def _remarks(columns: ReadColumns, wanted: Wanted, table: Csv | None = None) -> 
     separator, above = (table.separator, [ABOVE][: table.above]) if table else ("", [])
     remarks = read_as(headings, separator, columns.comma, above)
     units = _units(wanted)
-    if units and any(heading.factor != 1 or heading.terms for heading in headings):
+    if units and any(heading.read.size != 1 or heading.read.terms for heading in headings):
         remarks.append(f"results: {', '.join(f'{x} in {unit}' for x, unit in units.items())}.")
     return [*remarks, *([f"not read: {listed(columns.not_read)}."] if columns.not_read else [])]
 

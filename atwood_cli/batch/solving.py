@@ -14,20 +14,18 @@ from ..explain.conditions import Condition, Failures, failures_of
 from ..explain.messages import LIKE_RADIANS, reasons_in
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
-from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly, read_value
+from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly
 from ..reading.names import divided
-from ..reading.units import symbol_of
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NAMES, REGIMES, STANDARD
-from ..solver.scene import INPUTS, MASSES, Angle, Input, InTerms, Scene, SceneError
+from ..solver.scene import INPUTS, MASSES, Input, Scene, SceneError, Unit
 from ..tables.cells import EMPTY, has_unit, read_cell
 from ..tables.headings import (
     LIKE_SUM,
     LONGEST_HEADING,
     MASS_NAMES,
     NO_MASS,
-    ONE,
     Heading,
     Vocabulary,
     divisions,
@@ -103,7 +101,7 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
     inputs = {heading.name for heading in headings}
     if double := [name for name in wanted.given if name in inputs]:
         raise SceneError(double[0], wanted.given[double[0]], "is a column of the table, too; leave one out")
-    inputs |= {name for name, text in wanted.given.items() if read_value(name, text) is not None}
+    inputs |= {name for name, text in wanted.given.items() if read_exactly(name, text).number is not None}
     missing = [mass for mass in MASSES if mass not in inputs]
     if missing and whole:
         way = f"; give {' '.join(f'--column {x}=HEADING' for x in missing)}, or --{missing[0]} for all rows"
@@ -225,8 +223,8 @@ def solve_cells(
     given: Any = doubles[rows].to_dict() | {x: double or 0.0 for x, double in shared.items()}
     wraps = pl.select(pl.lit(given.get("wrap")).is_between(*LIKE_RADIANS, closed="none")).to_series()
     tally.like_radians |= {*wraps.unique(), *([None] if alone else [])}
-    terms = {heading.name: heading.terms for heading in columns.headings if heading.terms}
-    if any(x in terms or isinstance(exact[x].value, InTerms) for x in MASSES):
+    terms = {heading.name: heading.read.terms for heading in columns.headings if heading.read.terms}
+    if any(x in terms or exact[x].unit.terms for x in MASSES):
         bare = [x.name for x in columns.headings if x.name in MASSES and not x.unit]
         tally.beside_weights |= {x for x in bare if cells[x].cast(pl.Float64, strict=False).count()}
     solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names], terms)
@@ -251,7 +249,7 @@ def solve_cells(
         to_digits = f"{{:.{wanted.digits - 1}e}}".format
         values = values.with_columns(numbers.map_elements(lambda x: float(to_digits(x)), pl.Float64))
     if wanted.conditions:
-        in_si = ReadColumns([heading._replace(unit="", factor=ONE) for heading in columns.headings])
+        in_si = ReadColumns([x._replace(unit="", read=Unit(terms=x.read.terms)) for x in columns.headings])
         as_doubles = partial(_answers, in_si, {x: read_exactly(x, shared.get(x)) for x in INPUTS})
         failures = cache(lambda answers_of, inputs: failures_of(answers_of(inputs), wanted.conditions))
         for row, error in enumerate(values[ERROR]):
@@ -294,8 +292,8 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
     """Return the double nearest to each cell of a column, in SI units; null if only `_double` can tell."""
     import polars as pl
 
-    power = round(log10(heading.factor))
-    if heading.factor != Fraction(10) ** power or symbol_of(heading.unit) == "rad":
+    power = round(log10(heading.read.size))
+    if heading.read.size != Fraction(10) ** power or heading.read.symbol == "rad":
         return pl.repeat(None, len(cells), dtype=pl.Float64, eager=True)
     if power and not cells.dtype.is_float():
         cells = cells.cast(pl.String)  # a decimal or a long integer would round twice
@@ -326,9 +324,8 @@ def _double(heading: Heading, comma: bool, cell: str | float) -> float | None:
         return None
     if read is None or read.uncertainty:
         return None
-    is_pair = isinstance(read.value, InTerms | Angle)
-    number, kind = read.value if is_pair else (read.value, heading.terms)
-    if kind not in (heading.terms, "°") or number == inf:
+    number, unit = read.number, read.unit
+    if unit.terms != heading.read.terms or unit.symbol == "rad" or number == inf:
         return inf if number == inf else None
     double = to_double(number)
     return None if abs(double) == inf or (number and not double) else double

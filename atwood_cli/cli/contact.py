@@ -7,9 +7,9 @@ from ..explain import contact as balance
 from ..output.forms import Destination, Picture, Report, show
 from ..output.scene_page import contact_record, print_contact
 from ..output.text import say
-from ..reading.inputs import read_digits, read_scene
+from ..reading.inputs import read_digits, read_exactly
 from ..solver.answers import Answers
-from ..solver.scene import SceneError
+from ..solver.scene import INPUTS, Scene, SceneError
 from .options import DONE, FIGURE, OUTPUT, SCENE, Digits, option, with_options
 
 HELP = """Show the forces along the arc of contact and their sum.
@@ -43,7 +43,8 @@ def contact(
     ] = None,
     digits: Digits = None,
 ) -> int:
-    answers = Answers(read_scene(given), read_digits(digits))
+    inputs = {name: read_exactly(name, given.get(name)) for name in INPUTS}
+    answers = Answers(Scene.of(inputs), read_digits(digits), inputs)
     if not target.form:
         answers = answers.to_six_digits
     if points is not None and picture is not None and not target.form and target.file is None:

@@ -18,11 +18,22 @@ from ..numbers.digits import (
 )
 from ..numbers.text import counted, in_quotes
 from ..reading.names import NAMES_BY_SYMBOL, read_name
-from ..reading.units import GRAVITY, UNITS, Malformed, TypedNumber, read_number
+from ..reading.units import Malformed, read_number
 from ..solver.answers import TOO_SMALL, Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NO_NEED, QUANTITIES, REGIMES, Undetermined
-from ..solver.scene import INPUTS, MEASURED, Angle, Scene, SceneError, with_unit
+from ..solver.scene import (
+    INPUTS,
+    MEASURED,
+    MULTIPLE_OF_G,
+    NOT_GIVEN,
+    WEIGHT,
+    Angle,
+    Input,
+    Scene,
+    SceneError,
+    with_unit,
+)
 from .messages import ends_nearby, unmarked
 
 COMPARISON = re.compile("([^<>=]*)(<=|>=|==|<|>)([^<>=]*)")
@@ -37,11 +48,11 @@ MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
 DIMENSIONS = {
     **{parameter.unit: parameter.dimension for parameter in (*INPUTS.values(), *MEASURED.values())},
-    **{"N": "force", "N m": "torque", "kg": "mass or force"},
+    **{"N": "force", "N m": "torque"},
 }
 """The dimension of a quantity, by its unit."""
-AS_WEIGHT = "weight"
-"""The unit of a mass that is compared by its weight (N)."""
+OTHER_TERMS = {"kg": [WEIGHT], "m/s²": [MULTIPLE_OF_G]}
+"""The other terms in which a quantity may be compared, by its unit; g is the scene's."""
 
 SIGNED = ("acceleration", "torque", "rim_acceleration", "angular_acceleration")
 """The quantities with the sign of the motion."""
@@ -53,7 +64,7 @@ class Condition(NamedTuple):
     typed: str
     name: str
     sign: str = ""
-    number: TypedNumber = TypedNumber(Fraction(0))
+    bound: Input = NOT_GIVEN
 
 
 def read_condition(typed: str) -> Condition:
@@ -64,16 +75,15 @@ def read_condition(typed: str) -> Condition:
         raise SceneError("expect", typed, f"must be {CONDITIONS}")
     word, sign, number = map(str.strip, match.groups())
     name = read_name("expect", word, QUANTITIES, "quantity", NAMES_BY_SYMBOL)
+    unit = QUANTITIES[name].unit
     try:
-        value = read_number(number, DIMENSIONS.get(QUANTITIES[name].unit))
+        bound = read_number(number, DIMENSIONS.get(unit), OTHER_TERMS.get(unit, ()))
     except Malformed as error:
         raise SceneError("expect", typed, f"compares with {in_quotes(number)}, which {error}") from None
-    if QUANTITIES[name].unit == "kg" and value.unit in UNITS["force"]:
-        value = value._replace(unit=AS_WEIGHT)
-    if value.uncertainty and sign != "==":
+    if bound.uncertainty and sign != "==":
         rule = "compares with an uncertain number, which only == takes: it holds within the uncertainty"
         raise SceneError("expect", typed, rule)
-    return Condition(typed.strip(), name, sign, value)
+    return Condition(typed.strip(), name, sign, bound)
 
 
 def failures_of(answers: Answers, conditions: Iterable[Condition]) -> dict[str, str]:
@@ -118,14 +128,14 @@ def _holds(answers: Answers, expected: Condition) -> bool:
     """Decide whether a condition is true; a comparison is not if the quantity has no finite value."""
     if expected.name in REGIMES:
         return answers.decided.regime == expected.name
-    number = expected.number
+    bound = expected.bound
     try:
         if expected.sign == "==":
             least, most = (
-                number._replace(value=number.value + u) for u in (-number.uncertainty, number.uncertainty)
+                bound._replace(number=bound.number + u) for u in (-bound.uncertainty, bound.uncertainty)
             )
             return bool(_above(answers, expected.name, most) <= 0 <= _above(answers, expected.name, least))
-        return bool(OPERATORS[expected.sign](_above(answers, expected.name, number), 0))
+        return bool(OPERATORS[expected.sign](_above(answers, expected.name, bound), 0))
     except Undetermined as undetermined:
         return str(undetermined) == NO_NEED and ">" in expected.sign
     except ArithmeticError:
@@ -142,38 +152,38 @@ def _instead(answers: Answers, expected: Condition) -> str:
     if value is None or reason == TOO_SMALL:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
         return f"{expected.name} has {why}"
-    given = None if expected.number.unit == "rad" else _in_si(expected.number, answers.decided.scene)
-    if given is not None and not _above(
-        answers, expected.name, expected.number
-    ):  # digits would not show that the two are equal
+    bound = expected.bound
+    given = None if bound.unit.symbol == "rad" else _in_si(bound, answers.decided.scene)
+    if given is not None and not _above(answers, expected.name, bound):
+        # Digits would not show that the two are equal.
         shown = as_typed(given)
     else:
         value = answers.rounded(expected.name, rounding_apart_from(given, answers.digits or SHOWN_DIGITS))
         shown = "too large to be written out" if is_infinite(value) else format_number(value)
-    is_exact = expected.sign == "==" and given and not expected.number.uncertainty
+    is_exact = expected.sign == "==" and given and not bound.uncertainty
     hint = "; a rounded number takes its uncertainty, as 'a == 2.17926(1)' or 2.179±0.001" if is_exact else ""
-    if expected.name in SIGNED and value < 0 < expected.number.value:
+    if expected.name in SIGNED and value < 0 < bound.number:
         hint = "; it is positive when m2 descends"
     return f"it is {with_unit(shown, QUANTITIES[expected.name].unit)}{hint}"
 
 
-def _above(answers: Answers, name: str, number: TypedNumber) -> float | Decimal:
+def _above(answers: Answers, name: str, bound: Input) -> float | Decimal:
     """Return a quantity less the number that it is compared with, to one digit. Raises Undetermined."""
 
     def difference(machine: Any) -> Any:
-        return getattr(machine, name) - _bound(machine, number)
+        return getattr(machine, name) - _bound(machine, bound)
 
     return answers.settle(difference, to_digits(1))
 
 
-def _bound(machine: Any, number: TypedNumber) -> Any:
+def _bound(machine: Any, bound: Input) -> Any:
     """Return the number in the arithmetic of a machine; an angle in degrees."""
-    if number.unit == "rad":
-        return Angle(number.value, "rad").degrees(machine.ar)
-    return machine.ar.number(_in_si(number, machine.scene))
+    if bound.unit.symbol == "rad":
+        return Angle(bound.number, "rad").degrees(machine.ar)
+    return machine.ar.number(_in_si(bound, machine.scene))
 
 
-def _in_si(number: TypedNumber, scene: Scene) -> Fraction:
-    """Return the number in SI units; multiples of g and weights are by the scene's g."""
-    by = {GRAVITY: scene.g, AS_WEIGHT: 1 / scene.g}
-    return Fraction(number.value) * by.get(number.unit, 1)
+def _in_si(bound: Input, scene: Scene) -> Fraction:
+    """Return the number in the unit of the quantity."""
+    number, kind = Fraction(bound.number), bound.unit.terms
+    return kind.own(number, getattr(scene, kind.by)) if kind else number

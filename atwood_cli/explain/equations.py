@@ -100,10 +100,10 @@ class Derivation:
         """Return what is given or found, by symbol."""
         decided, scene, motion = self.decided, self.scene, self.decided.motion
         terms = {
-            f"{given.terms.symbol}{x[1:] if x in MASSES else ''}": given.number * decided.sign
+            f"{kind.symbol}{x[1:] if x in MASSES else ''}": scene.number_of(x) * decided.sign
             if x == "a"
-            else abs(given.number)
-            for x, given in scene.terms
+            else abs(scene.number_of(x))
+            for x, kind in scene.terms
         }
         return {
             **{name: getattr(scene, name) for name in ("m1", "m2", "g", "I", "R")},

@@ -24,7 +24,7 @@ from ..reading.units import MAX_MAGNITUDE
 from ..solver.answers import Answers
 from ..solver.physics import critical_heavier_mass
 from ..solver.quantities import FROM_MOTION, NAMES, QUANTITIES
-from ..solver.scene import MASSES, parameter_of, with_unit
+from ..solver.scene import MASSES, with_unit
 
 
 def unmarked(words: str) -> str:
@@ -118,8 +118,7 @@ def without_uncertainty(answers: Answers, names: Iterable[str]) -> list[str]:
 
 def _at(answers: Answers, x: str, value: Fraction) -> str:
     """Say a value of an input, with the unit that it was given in: mu = 0.35."""
-    unit = getattr(answers.decided.scene.given_as(x), "unit", parameter_of(x).unit)
-    return f"{x} = {with_unit(as_typed(value), unit)}"
+    return f"{x} = {with_unit(as_typed(value), answers.decided.scene.unit_of(x))}"
 
 
 LIMITS = {
@@ -141,14 +140,12 @@ def in_typed_units(answers: Answers, names: Sequence[str]) -> list[str]:
 
 def _in_unit_of(answers: Answers, limit: str, x: str) -> str:
     """Say a limit in the unit of an input, "" if that is a usual one."""
-    scene, is_weight = answers.decided.scene, x in dict(answers.decided.scene.terms)
-    number = scene.number_of(x)
-    unit: str = getattr(number, "in_unit", "") or (scene.given_as(x).unit if is_weight else "")
-    if unit in USUAL_UNITS:
+    unit = answers.typed(x).unit
+    if unit.symbol in USUAL_UNITS:
         return ""
-    share = scene.in_terms_of(x, Fraction(1)) / getattr(number, "factor", 1)
+    share = answers.decided.scene.in_terms_of(x, Fraction(1)) / unit.size
     value = answers.to_six_digits.settle(lambda m: getattr(m, limit) * m.ar.number(share))
-    return f"{limit} is {'a weight of ' if is_weight else ''}{with_unit(format_number(value), unit)}."
+    return f"{limit} is {'a weight of ' if unit.terms else ''}{with_unit(format_number(value), unit.symbol)}."
 
 
 def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
@@ -299,10 +296,9 @@ def on_units(answers: Answers) -> list[str]:
         typed = as_typed(wrap.number)
         sentences.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
     weights = [x for x, _ in scene.terms if x in MASSES]
-    for x in MASSES:
-        mass = getattr(scene, x)
-        has_unit = x in weights or bool(getattr(mass, "in_unit", ""))
-        if weights and mass and not has_unit and x != scene.motion.finds:
+    bare = [x for x in MASSES if x not in (*weights, scene.motion.finds) and not answers.typed(x).unit.symbol]
+    for x in bare if weights else ():
+        if mass := scene.own(x):
             sentences.append(f"`{x}` is a mass of {_short(answers, mass)} kg; for a weight give its unit.")
     return sentences
 
@@ -310,7 +306,7 @@ def on_units(answers: Answers) -> list[str]:
 def _on_weights(answers: Answers) -> list[str]:
     """Say the masses of weights, and which way a mass is taken to move."""
     scene, motion = answers.decided.scene, answers.decided.motion
-    weights = {x: _short(answers, given.number) for x, given in scene.terms if x in MASSES and given.number}
+    weights = {x: _short(answers, scene.number_of(x)) for x, _ in scene.terms if x in MASSES and scene.own(x)}
     each = [
         f"`{x}` is a weight of {weights[x]} N, the mass {_short(answers, getattr(scene, x))} kg"
         for x in weights

@@ -147,7 +147,7 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
             if given.inputs[known].given is not None:
                 rule = f"conflicts with {known}, which gives it; leave one of them out"
                 raise SceneError("find", name, rule)
-    for x, (_, terms) in given.scene.terms if "gravity" in names else ():
+    for x, terms in given.scene.terms if "gravity" in names else ():
         if terms.by == "g":
             rule = f"is {terms.words}, and gravity is to be found; give it in kg"
             raise SceneError(x, given.inputs[x].given, rule)
@@ -247,7 +247,7 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
     """Return the fitted values, with what follows from the rim mass by R and by the shape, if given."""
     results, scene = {x: values[x] for x in FITTED if x in names}, given.scene
     if "rim_mass" in results:
-        if given.inputs["inertia"].value is not None:
+        if given.inputs["inertia"].number is not None:
             results["pulley_mass"] = results["rim_mass"] / float(scene.inertia or 0)
         if scene.R is not None:
             results["moment_of_inertia"] = physics.moment_of_inertia(results["rim_mass"], float(scene.R))

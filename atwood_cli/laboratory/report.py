@@ -14,6 +14,7 @@ from ..numbers.text import counted, sentence
 from ..output.forms import Report
 from ..output.page import Page
 from ..output.text import aligned, cell
+from ..solver.answers import Answers
 from ..solver.scene import parameter_of
 from .columns import MEASURED
 from .estimate import ROUNDING, as_data, expected
@@ -87,8 +88,7 @@ def _capital(words: str) -> str:
 def conditions(fit: Fitted) -> str:
     """Return what is the same in all runs, in words."""
     inputs = fit.given.inputs
-    uncertain = {name: typed.uncertainty for name, typed in inputs.items() if typed.uncertainty}
-    words = inputs_in_words(fit.given.scene, uncertain)
+    words = inputs_in_words(Answers(fit.given.scene, None, inputs))
     g = "" if "gravity" in fit.names else "g"
     inertia = "" if inputs["M"].given is None else "inertia"
     shown = (x for x, typed in inputs.items() if typed.given is not None or x in (g, inertia, "drop"))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import shortened
 from ..reading.names import divided
-from ..solver.scene import MASSES, Input, InTerms, SceneError
+from ..solver.scene import MASSES, Input, SceneError
 from ..tables.cells import OWN_UNIT, read_cell
 from ..tables.headings import Heading, read_as, refused
 from ..tables.sheets import Sheet, sheet_of, units_in_cells
@@ -116,12 +116,12 @@ def read_runs(
     """
     sheet = units_in_cells(sheet_of(source, VOCABULARY, named, sheet_name))
     columns = columns_of(sheet, divided(labels, sheet.columns), given, named)
-    by = {x: given[x].value for x in ("R", "g") if x in given and not given[x].uncertainty}
+    by = {x: given[x].number for x in ("R", "g") if x in given and not given[x].uncertainty}
     shared = {x: _in_own_terms(x, given[x], by) for x in (*MASSES, "hanger", "drop") if x in given}
-    common = {x: float(u) for x, (_, u, _) in shared.items() if u and x != "drop"}
-    if wide := [x for x in common if shared[x].uncertainty >= shared[x].value]:
+    common = {x: float(read.uncertainty) for x, read in shared.items() if read.uncertainty and x != "drop"}
+    if wide := [x for x in common if shared[x].uncertainty >= shared[x].number]:
         raise SceneError(wide[0], given[wide[0]].given, REACHES_0)
-    hanger = shared.pop("hanger", Input(Fraction(0), Fraction(0), None))
+    hanger = shared.pop("hanger", Input(Fraction(0)))
     others = [*columns.others]
     if hanger.given is not None:
         others.append(f"{shortened(str(hanger.given))} of hanger added to m1 and m2")
@@ -136,12 +136,12 @@ def read_runs(
     used = [row for row in rows if not row.unused]
     heights = {read[:2] for row in used for own, read in row.cells.values() if own.name == "drop"}
     if len(heights) == 1:  # if it is wrong, it is so in all runs alike
-        same["drop"] = shared["drop"] = Input(*heights.pop(), None)
+        same["drop"] = shared["drop"] = Input(*heights.pop())
     runs = defaultdict[tuple[tuple[str, Number], ...], list[Row]](list)
     for row in used:
         given_by = {own.name: read[:2] for own, read in row.cells.values() if own.name in OF_RUNS}
-        given_by |= {x: (read.value, Fraction(0)) for x, read in shared.items()}
-        given_by |= {x: (given_by[x][0] + hanger.value, given_by[x][1]) for x in MASSES}
+        given_by |= {x: (read.number, Fraction(0)) for x, read in shared.items()}
+        given_by |= {x: (given_by[x][0] + hanger.number, given_by[x][1]) for x in MASSES}
         runs[tuple(given_by.items())].append(row)
     if not runs:
         raise Unreadable(f"it has no runs{behind_an_error(remarks)}")
@@ -167,7 +167,7 @@ def _check_uncertainties(rows: Sequence[Row], left_out: Collection[str]) -> None
     """Raise Unreadable if a quantity has an uncertainty in some cells alone; a mass of 0 needs none."""
     used = [row for row in rows if str(row.number) not in left_out]
     cells = [(own.name, place, read) for row in used for place, (own, read) in row.cells.items()]
-    cells = [cell for cell in cells if cell[1] not in left_out and (cell[0] in MEASURED or cell[2].value)]
+    cells = [cell for cell in cells if cell[1] not in left_out and (cell[0] in MEASURED or cell[2].number)]
     stated = {name for name, _, read in cells if read.uncertainty}
     if lacking := [place for name, place, read in cells if name in stated and not read.uncertainty]:
         none = f"{in_words(lacking[0])} has no uncertainty, or one of 0"
@@ -176,7 +176,7 @@ def _check_uncertainties(rows: Sequence[Row], left_out: Collection[str]) -> None
 
 def _doubts(runs: Runs, given: Mapping[str, Input], has_unit: Collection[str]) -> list[str]:
     """Say which large numbers without a unit may be in a smaller one, and that m1 may be a cart."""
-    sizes: dict[str, Any] = {x: read.value for x, read in given.items()}
+    sizes: dict[str, Any] = {x: read.number for x, read in given.items()}
     sizes |= {x: max(column) for x, column in {**runs.given, runs.kind: runs.values}.items()}
     doubts = dict[str, str]()
     for x, (least, what, unit) in LARGE.items():
@@ -192,14 +192,14 @@ def _doubts(runs: Runs, given: Mapping[str, Input], has_unit: Collection[str]) -
 
 def _in_own_terms(name: str, read: Input, by: Mapping[str, Any]) -> Input:
     """Return an input, converted ``by`` R or g if it is in other terms. Raises SceneError."""
-    if not isinstance(read.value, InTerms):
+    terms = read.unit.terms
+    if not terms:
         return read
-    number, terms = read.value
     if terms.by not in by:
         rule = f"is {terms.words}, which needs {terms.by} without an uncertainty"
         raise SceneError(name, read.given, rule)
-    value, uncertainty = (terms.own(x, by[terms.by]) for x in (number, read.uncertainty))
-    return Input(value, uncertainty, read.given)
+    number, uncertainty = (terms.own(x, by[terms.by]) for x in (read.number, read.uncertainty))
+    return Input(number, uncertainty, read.given)
 
 
 def _as_columns(columns: Columns, runs: RowsOfRuns, left_out: Collection[str]) -> Runs:
@@ -248,8 +248,7 @@ def in_words(*places: int | str) -> str:
 def in_range(read: Input) -> bool:
     """Decide if a number, and its uncertainty, are 0 or of a size whose squares are doubles."""
     low, high = MEASURABLE
-    sizes = (getattr(read.value, "number", read.value), read.uncertainty)
-    return all(low <= abs(size) <= high for size in sizes if size)
+    return all(low <= abs(size) <= high for size in (read.number, read.uncertainty) if size)
 
 
 def _no_run(row: Sequence[str], headings: Sequence[Heading]) -> str:
@@ -298,7 +297,7 @@ def _read_row(row: Sequence[str], columns: Columns, by: Mapping[str, Any]) -> li
                 continue
             raise SceneError(name, None, "is missing; write it in each row")
         if name in CONDITIONS:
-            by = {**by, name: cell.value}
+            by = {**by, name: cell.number}
         else:
             cell = _in_own_terms(name, cell, by)
         if not in_range(cell):

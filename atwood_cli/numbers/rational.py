@@ -64,15 +64,6 @@ class OfFloat(Fraction):
         return repr(Fraction(self))
 
 
-class Typed(Fraction):
-    """A number that is shown as it was typed: as a quotient, or in a unit of ``factor`` in that of the SI."""
-
-    quotient, in_unit, factor = "", "", Fraction(1)
-
-    def __repr__(self) -> str:
-        return repr(Fraction(self))
-
-
 class Rationals:
     """The arithmetic of exact fractions. An operation whose result may not be one raises `Irrational`."""
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..explain.contact import kind_of, point, say_profile
-from ..explain.given import in_unit_typed, inputs_with_effect
+from ..explain.given import inputs_with_effect
 from ..explain.messages import unmarked, verdict
 from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..solver import arc
@@ -80,7 +80,7 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
         )
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
-    given = inputs_with_effect(decided.scene, answers.uncertain)
+    given = inputs_with_effect(answers)
     above = [", ".join(given.values()), unmarked(verdict(answers))]
     panels = 2 if curves else 1
     with drawing(picture, above, " ".join(below), panels) as figure:
@@ -171,7 +171,7 @@ def _pulley(answers: Answers) -> str:
     if scene.I is not None and scene.M is None:
         return f"I = {_number(scene.I, answers)} kg m²"
     mass = answers["critical_pulley_mass"] if decided.regime == "verge" else decided.pulley_mass
-    return "" if mass is None else f"M = {_mass(mass, answers)}"
+    return "" if mass is None else f"M = {_mass('M', mass, answers)}"
 
 
 def _axle_friction(answers: Answers) -> str:
@@ -207,10 +207,12 @@ def _arrows_on_arc(answers: Answers, kind: arc.Profile, phi: float) -> Arrows:
     return Arrows(phi * shares, *_forces(answers, kind, shares))
 
 
-def _mass(mass: Any, answers: Answers) -> str:
-    """Return a mass with its unit, that in which it was typed."""
-    number, unit = in_unit_typed(mass)
-    return f"{_number(number, answers)} {unit or 'kg'}"
+def _mass(x: str, mass: Any, answers: Answers) -> str:
+    """Return a mass in the unit in which it was typed; a weight in kg."""
+    unit = answers.typed(x).unit
+    if unit.terms or not unit.symbol:
+        return f"{_number(mass, answers)} kg"
+    return f"{_number(mass / unit.size, answers)} {unit.symbol}"
 
 
 def _draw_contact(axes: "Axes", arrows: Arrows, dash: str) -> None:
@@ -240,7 +242,7 @@ def _draw_masses(axes: "Axes", answers: Answers, lengths: Mapping[str, float]) -
         _draw_arrows(axes, [x + bottom * 1j], [-weight * 1j], GREEN)
         for away, height, words, colour in (
             (0.12, top + max(pull / 2, 0.17), f"T{end} = {_number(answers[f'tension_{end}'])} N", INK),
-            (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_mass(mass, answers)}", INK),
+            (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_mass(f'm{end}', mass, answers)}", INK),
             (
                 0.12,
                 bottom - max(weight / 2, 0.17),

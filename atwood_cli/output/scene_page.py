@@ -124,7 +124,7 @@ def print_table(
 
 def _print_head(page: Page, answers: Answers, measured: str = "") -> None:
     """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
-    given = inputs_with_effect(answers.decided.scene, answers.uncertain)
+    given = inputs_with_effect(answers)
     page.say(", ".join(given.values()))
     if measured:
         page.say(measured, style="bold")
@@ -191,7 +191,7 @@ def print_steps(page: Page, answers: Answers, names: Sequence[str]) -> None:
     from ..explain.derivation import explain
     from .typeset import as_lines, as_markdown
 
-    given = inputs_with_effect(answers.decided.scene).values()
+    given = inputs_with_effect(answers).values()
     explanation = explain(answers, names)
     if page.is_markdown:
         for line in as_markdown(given, explanation):

@@ -25,9 +25,8 @@ def read_answers(given: Mapping[str, Any], digits: int | None) -> Answers:
         if find is not None:
             find = read_name("find", str(find), FINDABLE, "input that a motion finds", other_names)
         scene = read_motion(inputs, find)
-    uncertain = {name: read.uncertainty for name, read in inputs.items() if read.uncertainty}
-    if not uncertain:
-        return Answers(scene, digits)
+    if not any(read.uncertainty for read in inputs.values()):
+        return Answers(scene, digits, inputs)
     from ..solver.uncertainty import UncertainAnswers
 
-    return UncertainAnswers(scene, digits, uncertain)
+    return UncertainAnswers(scene, digits, inputs)

@@ -17,18 +17,16 @@ from ..solver.scene import (
     DEFAULTS,
     INPUTS,
     MEASURED,
-    STANDARD_GRAVITY,
     Angle,
     Given,
     Input,
-    InTerms,
     Parameter,
     Scene,
     SceneError,
+    Unit,
     parameter_of,
 )
 from .units import (
-    GRAVITY,
     MAX_DIGITS,
     MAX_MAGNITUDE,
     NOT_A_NUMBER,
@@ -36,12 +34,10 @@ from .units import (
     TOO_LONG,
     Malformed,
     NotANumber,
-    TypedNumber,
     in_ascii,
     is_uncertain,
     limited,
     read_number,
-    terms_of,
 )
 
 # fmt: off
@@ -78,20 +74,19 @@ def read_input(name: str, given: Given | None, signed: bool = False) -> Input:
     if given is None or is_missing(given):
         return _default(name)
     if isinstance(given, str):
-        number = _read_text(name, given)
+        read = _read_text(name, given)
     elif isinstance(given, Angle) and name == "wrap":
-        number = TypedNumber(_exact_number(name, given.number), given.unit)
+        read = Input(_exact_number(name, given.number), unit=Unit(given.unit))
     else:
-        number = TypedNumber(_exact_number(name, given))
-    return Input(_checked(name, given, number, signed), number.uncertainty, given)
+        read = Input(_exact_number(name, given))
+    _check_domain(name, given, read.number, signed)
+    return read._replace(given=given)
 
 
 @cache
 def _default(name: str) -> Input:
     """Return an input that is not given."""
-    default = DEFAULTS.get(name)
-    value = read_value(name, default) if default else None
-    return Input(value, Fraction(0), None)
+    return Input(Fraction(DEFAULTS[name]) if name in DEFAULTS else None)
 
 
 def read_exactly(name: str, given: Given | None) -> Input:
@@ -99,11 +94,6 @@ def read_exactly(name: str, given: Given | None) -> Input:
     if isinstance(given, str) and is_uncertain(given):
         raise SceneError(name, given, NO_UNCERTAINTY)
     return read_input(name, given)
-
-
-def read_value(name: str, given: Given | None) -> Any:
-    """Read the exact value of one input, as `Input` has it. Raises SceneError."""
-    return read_exactly(name, given).value
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:
@@ -121,32 +111,24 @@ def read_digits(given: int | str | None) -> int | None:
     return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
-def _checked(name: str, given: Given, number: TypedNumber, signed: bool) -> Any:
-    """Return a number as the value of an input: an angle, or in other terms. Raises SceneError."""
-    parameter, (value, unit, _) = parameter_of(name), number
+def _check_domain(name: str, given: Given, value: Fraction | float, signed: bool) -> None:
+    """Raise SceneError if an input may not have this value."""
+    parameter = parameter_of(name)
     too_small = (value < 0 and not signed) or (value == 0 and not parameter.may_be_zero)
     too_small &= not parameter.signed
     if too_small or (abs(value) == inf and not parameter.may_be_infinite):
         massless = "; a pulley without inertia is M = 0" if name == "I" and value == 0 else ""
         raise SceneError(name, given, parameter.domain + massless)
-    if parameter.dimension == "angle":
-        return Angle(value, "rad" if unit == "rad" else "°")
-    terms = terms_of(parameter, unit)
-    return InTerms(value, terms) if terms else value
 
 
-def _read_text(name: str, text: str) -> TypedNumber:
+def _read_text(name: str, text: str) -> Input:
     """Read the number in a text. Raises SceneError."""
     parameter = parameter_of(name)
     word = without_blanks(text).lower()
     if parameter.may_be_infinite and word == "inf":
-        return TypedNumber(inf)
+        return Input(inf)
     try:
-        number = read_number(parameter.names.get(word, text), parameter.dimensions or None)
-        if number.unit == GRAVITY and not parameter.terms:  # g as a multiple of standard gravity
-            value, _, u = number
-            return TypedNumber(value * Fraction(STANDARD_GRAVITY), "", u * Fraction(STANDARD_GRAVITY))
-        return number
+        return read_number(parameter.names.get(word, text), parameter.dimension, parameter.terms)
     except NotANumber:
         rule = _not_a_number(parameter, in_ascii(text))
     except Malformed as error:

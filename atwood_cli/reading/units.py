@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from decimal import ROUND_FLOOR, Decimal
 from fractions import Fraction
 from math import inf
-from typing import NamedTuple
 
 from ..numbers.digits import as_typed, to_digits
-from ..numbers.rational import Typed
 from ..numbers.text import in_quotes, without_blanks
-from ..solver.scene import MULTIPLE_OF_G, STANDARD_GRAVITY, Parameter, Terms
+from ..solver.scene import MULTIPLE_OF_G, STANDARD_GRAVITY, Input, Terms, Unit
 
-GRAVITY = MULTIPLE_OF_G.dimension
-"""The unit of a multiple of g, as the symbol g is a gram's."""
 FOOT, INCH, POUND = Fraction("0.3048"), Fraction("0.0254"), Fraction("0.45359237")
 POUND_FORCE = POUND * Fraction(STANDARD_GRAVITY)
 
@@ -62,7 +58,6 @@ MAX_DIGITS, MAX_EXPONENT = 1000, 500
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 LONGEST_QUOTIENT = 30
 """The most characters of a quotient that is shown as it was typed."""
-ONE = Fraction(1)
 _LARGEST = 10**MAX_MAGNITUDE
 TOO_LONG = f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits"
 
@@ -73,10 +68,10 @@ _QUOTIENT = rf"{_DECIMAL}(?: ?/ ?{_DECIMAL})?"
 NUMBER = re.compile(rf"({_QUOTIENT})(?: ?({_UNIT}))?", re.ASCII)
 _MULTIPLE = rf"({_QUOTIENT}|[+-]?) ?\*? ?(?:%s)(?: ?/ ?({_DECIMAL}))?"
 MULTIPLES = {
-    "angle": (_MULTIPLE % "(?i:pi)|π" + "(?: ?rad)?", "pi", Fraction(180)),
-    "acceleration": (_MULTIPLE % "g", GRAVITY, Fraction(1)),
+    "angle": (_MULTIPLE % "(?i:pi)|π" + "(?: ?rad)?", Fraction(180), "°"),
+    "acceleration": (_MULTIPLE % "g", Fraction(STANDARD_GRAVITY), "m/s2"),
 }
-"""The pattern of multiples of a constant, as 3pi/2, its name and its value, by dimension; of g it is 1."""
+"""The pattern of multiples of a constant, as 3pi/2, and its value in a unit, by dimension."""
 SHARE = re.compile(rf"({_DECIMAL} ?{_UNIT}) ?/ ?({_DECIMAL})", re.ASCII)
 """A number with a unit, divided, as a diameter of 12cm/2."""
 STOPWATCH = re.compile(r"(?:(\d+):(?=[0-5]\d:))?(\d+):([0-5]\d(?:\.\d*)?)", re.ASCII)
@@ -90,7 +85,6 @@ _MIXED = re.compile(rf"(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([{''.join(_VULGAR)
 """A vulgar fraction, perhaps behind a whole number."""
 _PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
 _SYMBOLS = {symbol.translate(_PLAIN): symbol for symbols in UNITS.values() for symbol in symbols}
-_DIMENSIONS = {symbol: dimension for dimension, symbols in UNITS.items() for symbol in symbols}
 WORDS = {
     "kg": "kilogram kilograms kilos кг",
     "g": "gram grams gramm gramme grammes gramos gramas gr gm gms г",
@@ -127,17 +121,6 @@ class NotANumber(Malformed):
     """The text does not look like a number."""
 
 
-class TypedNumber(NamedTuple):
-    """A number as it was typed: exact, with its standard uncertainty, in SI units, degrees or radians.
-
-    ``unit`` is the symbol of the unit, "" if there is none. The value is a float only if it is infinite.
-    """
-
-    value: Fraction | float
-    unit: str = ""
-    uncertainty: Fraction = Fraction(0)
-
-
 def in_ascii(text: str) -> str:
     """Return a number without needless blanks and in the characters of ASCII: −1½ is -3/2."""
     text = without_blanks(text).translate(_ALIKE)
@@ -154,19 +137,19 @@ def is_uncertain(text: str) -> bool:
     return any(mark in text for mark in UNCERTAIN)
 
 
-def read_number(text: str, dimension: str | None) -> TypedNumber:
+def read_number(text: str, dimension: str | None, others: Sequence[Terms] = ()) -> Input:
     """Read a number, with its unit and its uncertainty if it has them. Raises Malformed.
 
-    ``dimension`` is one of `UNITS`, or two with an "or" between, or None for a number that takes no unit.
+    ``dimension`` is one of `UNITS`, or None for a number that takes no unit. ``others`` are further terms in
+    which it may be.
     """
-    text = in_ascii(text)
-    if not is_uncertain(text):
-        return TypedNumber(*_value_and_unit(text, dimension))
-    typed, u = _split_uncertainty(text)
-    value, unit = _value_and_unit(typed, dimension)
+    typed, u = in_ascii(text), ""
+    if is_uncertain(typed):
+        typed, u = _split_uncertainty(typed)
+    read = _read_exactly(typed, dimension, others)
     if u.endswith(PERCENT):
-        return TypedNumber(value, unit, _value_and_unit(u.removesuffix(PERCENT), None)[0] * abs(value) / 100)
-    return TypedNumber(value, unit, _value_and_unit(u, dimension)[0])
+        return read._replace(uncertainty=_quotient(u.removesuffix(PERCENT)) * abs(read.number) / 100)
+    return read._replace(uncertainty=_read_exactly(u, dimension, others).number) if u else read
 
 
 def _split_uncertainty(text: str) -> tuple[str, str]:
@@ -193,48 +176,42 @@ def _split_uncertainty(text: str) -> tuple[str, str]:
     return match[1] + match[4], match[3] + match[4]
 
 
-def _value_and_unit(text: str, dimension: str | None) -> tuple[Fraction, str]:
-    """Return the value of a number without an uncertainty, and its unit. Raises Malformed."""
-    pattern, constant, worth = MULTIPLES.get((dimension or "").split(" or ")[0], ("", "", Fraction(0)))
+def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> Input:
+    """Read a number without an uncertainty. Raises Malformed."""
+    pattern, constant, unit_of_constant = MULTIPLES.get(dimension or "", ("", Fraction(0), ""))
     if pattern and (multiple := re.fullmatch(pattern, text, re.ASCII)):
         times, parts = multiple.groups(default="1")
         if not times.strip("+-"):
             times += "1"
-        return limited(_quotient(times) * worth * _quotient(f"1/{parts}")), constant
+        number = _quotient(times) * _quotient(f"1/{parts}")
+        if MULTIPLE_OF_G in others:
+            return Input(limited(number), unit=Unit(MULTIPLE_OF_G.unit, terms=MULTIPLE_OF_G))
+        return Input(limited(number * constant), unit=Unit(unit_of_constant))
     if dimension == "time" and (clock := STOPWATCH.fullmatch(text)):
         hours, minutes, seconds = map(_decimal, clock.groups(default="0"))
-        return limited((hours * 60 + minutes) * 60 + seconds), "s"
+        return Input(limited((hours * 60 + minutes) * 60 + seconds), unit=Unit("s"))
     if share := SHARE.fullmatch(text):
-        value, unit = _value_and_unit(share[1], dimension)
-        return limited(value * _quotient(f"1/{share[2]}")), unit
+        read = _read_exactly(share[1], dimension, others)
+        return read._replace(number=limited(read.number * _quotient(f"1/{share[2]}")))
     match = NUMBER.fullmatch(text)
     if not match:
         raise NotANumber(NOT_A_NUMBER)
-    number, unit = match.groups(default="")
-    value = _quotient(number)
-    if not unit:
-        return _typed(value, number), ""
+    typed, symbol = match.groups(default="")
+    value, is_quotient = _quotient(typed), "/" in typed
+    quotient = typed if is_quotient and len(typed) <= LONGEST_QUOTIENT else ""
+    if not symbol:
+        return Input(value, quotient=quotient)
     if dimension is None:
-        raise Malformed(f"must be a plain number, without the {in_quotes(unit)}")
-    factor = read_unit(unit, dimension)
-    value *= factor
-    if "/" in number:
+        raise Malformed(f"must be a plain number, without the {in_quotes(symbol)}")
+    unit = read_unit(symbol, dimension, others)
+    value *= unit.size
+    if is_quotient:
         limited(value)
     else:
         digits = re.sub("[^0-9]", "", as_typed(value, inf).partition("e")[0]).lstrip("0")
-        exponent = _power(number) + to_digits(1, ROUND_FLOOR)(factor).adjusted()
+        exponent = _power(typed) + to_digits(1, ROUND_FLOOR)(unit.size).adjusted()
         _check_size(len(digits), exponent, ", its unit included")
-    return _typed(value, number, symbol_of(unit), factor), symbol_of(unit)
-
-
-def _typed(value: Fraction, number: str, unit: str = "", factor: Fraction = ONE) -> Fraction:
-    """Return a number, which remembers how it was typed if that differs from what it is in SI units."""
-    if "/" not in number and not unit:
-        return value
-    typed = Typed(value)
-    typed.quotient = number if "/" in number and len(number) <= LONGEST_QUOTIENT else ""
-    typed.in_unit, typed.factor = unit, factor
-    return typed
+    return Input(value, unit=unit, quotient=quotient)
 
 
 def _quotient(text: str) -> Fraction:
@@ -276,18 +253,14 @@ def limited(value: Fraction) -> Fraction:
     return value
 
 
-def read_unit(unit: str, wanted: str) -> Fraction:
-    """Return the factor from a unit to the SI, or to degrees. Raises Malformed if there is no such unit."""
-    units = {symbol: factor for name in wanted.split(" or ") for symbol, factor in UNITS[name].items()}
-    if (symbol := symbol_of(unit)) not in units:
-        raise Malformed(f"has the unit {in_quotes(unit)}; it takes {', '.join(units)}")
-    return Fraction(units[symbol])
-
-
-def terms_of(parameter: Parameter, unit: str) -> Terms | None:
-    """Return the terms, other than its own, in which a parameter has this unit."""
-    dimension = GRAVITY if unit == GRAVITY else _DIMENSIONS.get(symbol_of(unit))
-    return next((terms for terms in parameter.terms if terms.dimension == dimension), None)
+def read_unit(text: str, dimension: str, others: Sequence[Terms] = ()) -> Unit:
+    """Return a unit of a dimension, or of the terms of others. Raises Malformed if it is none."""
+    terms_by_dimension = {dimension: None, **{terms.dimension: terms for terms in others}}
+    units = {symbol: name for name in terms_by_dimension for symbol in UNITS.get(name, {})}
+    if (symbol := symbol_of(text)) not in units:
+        raise Malformed(f"has the unit {in_quotes(text)}; it takes {', '.join(units)}")
+    name = units[symbol]
+    return Unit(symbol, Fraction(UNITS[name][symbol]), terms_by_dimension[name])
 
 
 def symbol_of(unit: str) -> str:

@@ -15,7 +15,7 @@ from ..numbers.settling import settle
 from .decisions import Decisions
 from .machine import Machine
 from .quantities import FROM_MOTION, NAMES, Undetermined
-from .scene import Scene
+from .scene import NOT_GIVEN, Input, Scene
 
 if TYPE_CHECKING:
     from ..numbers.rational import Arithmetic, N, Quantity
@@ -37,10 +37,13 @@ class Answer(NamedTuple):
 
 
 class Answers:
-    """The quantities of a scene, each computed when it is asked for: as doubles, or to ``digits`` digits."""
+    """The quantities of a scene, each computed when it is asked for: as doubles, or to ``digits`` digits.
 
-    def __init__(self, scene: Scene, digits: int | None = None) -> None:
-        self.decided = Decisions(scene)
+    Of the ``inputs`` as they were given, none of which is needed here, pages have the units.
+    """
+
+    def __init__(self, scene: Scene, digits: int | None = None, inputs: Mapping[str, Input] = {}) -> None:
+        self.decided, self.inputs = Decisions(scene), inputs
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._by_digits: dict[int | None, Answers] = {}
         self._round_to(digits)
@@ -58,10 +61,9 @@ class Answers:
             self._by_digits[digits]._round_to(digits)
         return self._by_digits[digits]
 
-    @property
-    def given(self) -> tuple[Any, ...]:
-        """The arguments that make these answers again."""
-        return self.decided.scene, self.digits
+    def typed(self, x: str) -> Input:
+        """Return an input as it was given."""
+        return self.inputs.get(x, NOT_GIVEN)
 
     @property
     def to_six_digits(self) -> Answers:

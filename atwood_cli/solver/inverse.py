@@ -47,7 +47,7 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
     m2_may_rise = finds in MASSES and "a" not in given and 0 not in (scene.m1, scene.m2)
     if below_0 := [x for x in fall if getattr(scene.motion, x) < 0 and not m2_may_rise]:
         raise SceneError(below_0[0], inputs[below_0[0]].given, NOT_BELOW_0)
-    if by_g := [(x, terms.words) for x, (_, terms) in scene.terms if finds == terms.by]:
+    if by_g := [(x, terms.words) for x, terms in scene.terms if finds == terms.by]:
         x, words = by_g[0]
         rule = f"is {words}, and g is to be found; give g, or {x} in {parameter_of(x).unit}"
         raise SceneError(x, inputs[x].given, rule)
@@ -71,13 +71,13 @@ def _unknown(inputs: Mapping[str, Input], find: str | None, name: str) -> str:
         if inputs[find].given is not None:
             raise SceneError("find", find, f"conflicts with {find}, which is given; leave one of them out")
         return find
-    M, has_pulley = inputs["M"].value, not (inputs["M"].value is None is inputs["I"].value)
-    missing = [mass for mass in MASSES if inputs[mass].value is None]
+    M, has_pulley = inputs["M"].number, not (inputs["M"].number is None is inputs["I"].number)
+    missing = [mass for mass in MASSES if inputs[mass].number is None]
     if len(missing) == 1:
         if not has_pulley:
             raise SceneError(missing[0], None, f"is missing; give it, or M, with which {name} finds it")
         return missing[0]
-    slides = M == inf or (inputs["mu"].value is not None and M is not None)
+    slides = M == inf or (inputs["mu"].number is not None and M is not None)
     return "mu_k" if slides else "g" if has_pulley else "M"
 
 

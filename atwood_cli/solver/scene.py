@@ -53,7 +53,7 @@ class Angle(NamedTuple):
 class Terms(NamedTuple):
     """Terms in which an input may be given besides its own, and the symbol, dimension and SI unit there.
 
-    The input is the number given times another input, ``by``, or divided by it.
+    The input in its own terms is the number given times another input, ``by``, or divided by it.
     """
 
     words: str
@@ -64,8 +64,12 @@ class Terms(NamedTuple):
     divided: bool = False
 
     def own(self, number: Any, by: Any) -> Any:
-        """Return the input from the number given."""
+        """Return the input in its own terms, of a number in these."""
         return number / by if self.divided else number * by
+
+    def number(self, own: Any, by: Any) -> Any:
+        """Return the number in these terms, of the input in its own."""
+        return own * by if self.divided else own / by
 
 
 WEIGHT = Terms("a weight", "W", "force", "N", "g", divided=True)
@@ -75,15 +79,27 @@ ANGULAR_SPEED = Terms("an angular speed", "ω_given", "angular speed", "rad/s", 
 MULTIPLE_OF_G = Terms("a multiple of g", "n_g", "gravity", "g", "g")
 
 
-class InTerms(NamedTuple):
-    """An input as it was given in other terms: a number in their SI unit."""
+def in_own_terms(numbers: Mapping[str, Any], terms: Mapping[str, Terms]) -> dict[str, Any]:
+    """Return numbers, of any type, in their inputs' own terms; ``terms`` has those of the others."""
+    values = dict(numbers)
+    for x, kind in terms.items():
+        values[x] = kind.own(values[x], values[kind.by])
+    return values
 
-    number: Any
-    terms: Terms
+
+class Unit(NamedTuple):
+    """The unit of a number as it was typed: its symbol, its size in the SI unit or in degrees, its terms.
+
+    The terms are None if they are the input's own.
+    """
+
+    symbol: str = ""
+    size: Fraction = Fraction(1)
+    terms: Terms | None = None
 
     @property
-    def unit(self) -> str:
-        return self.terms.unit
+    def in_words(self) -> str:
+        return self.symbol.replace("2", "²")
 
 
 if TYPE_CHECKING:
@@ -166,12 +182,6 @@ class Parameter(NamedTuple):
         end = " (inf locks the pulley)" if self.may_be_infinite else ", and finite"
         return f"must be {bound}{end}"
 
-    @property
-    def dimensions(self) -> str:
-        """The dimensions that its units may have, its own first, with an "or" between."""
-        others = [terms.dimension for terms in self.terms if terms != MULTIPLE_OF_G]
-        return " or ".join([self.dimension or "", *others])
-
 
 # fmt: off
 A_MASS: Any = ("mass", "kg", True, False, "mass", {}, False, (WEIGHT,))
@@ -234,15 +244,21 @@ def with_unit(value: str, unit: str) -> str:
 
 
 class Input(NamedTuple):
-    """An input as it was read: its exact value in SI units, its standard uncertainty, and what was given.
+    """A number with its unit, as it was given: exact, with its standard uncertainty, and what was typed.
 
-    ``value`` is a Fraction, inf for a locked pulley, an `Angle` for the wrap, or `InTerms`; it is None if
-    nothing was given and there is no default. The uncertainty is in the unit of the value.
+    ``number`` is in the SI unit of its terms, in degrees or in radians, and so is the uncertainty. It is a
+    Fraction, inf for a locked pulley, or None if nothing was given and there is no default. The page writes
+    it in the ``unit`` that was typed, and as the ``quotient``, if it was one.
     """
 
-    value: Any
-    uncertainty: Fraction
-    given: Given | None
+    number: Any = None
+    uncertainty: Fraction = Fraction(0)
+    given: Given | None = None
+    unit: Unit = Unit()
+    quotient: str = ""
+
+
+NOT_GIVEN = Input()
 
 
 class Motion(NamedTuple):
@@ -283,7 +299,7 @@ class Scene(NamedTuple):
     """A valid scene in SI units, exact; an input that is not given is None.
 
     ``M`` is a float only if it is infinite, for a locked pulley. ``motion`` has what was measured of it, and
-    ``terms`` the inputs and measurements that were given in other terms, by name, as they were given.
+    ``terms`` are those of inputs and measurements that were given in other terms than their own.
     """
 
     m1: Fraction
@@ -298,7 +314,7 @@ class Scene(NamedTuple):
     wrap: Angle
     axle: Fraction | None = None
     motion: Motion = Motion()
-    terms: tuple[tuple[str, InTerms], ...] = ()
+    terms: tuple[tuple[str, Terms], ...] = ()
 
     @classmethod
     def of(cls, inputs: Mapping[str, Input], finds: str | None = None) -> Scene:
@@ -310,13 +326,13 @@ class Scene(NamedTuple):
         def refuse(name: str, rule: str) -> NoReturn:
             raise SceneError(name, inputs[name].given, rule)
 
-        values = {name: read.value for name, read in inputs.items()}
-        terms = {name: value for name, value in values.items() if isinstance(value, InTerms)}
-        for name, given in terms.items():
-            by = values[given.terms.by]
-            if by is None:  # g has a default
-                refuse(name, f"is {given.terms.words}, which needs the radius R as well")
-            values[name] = given.terms.own(given.number, by)
+        numbers = {name: read.number for name, read in inputs.items()}
+        terms = {name: read.unit.terms for name, read in inputs.items() if read.unit.terms}
+        for name, kind in terms.items():
+            if numbers[kind.by] is None:  # g has a default
+                refuse(name, f"is {kind.words}, which needs the radius R as well")
+        values = in_own_terms(numbers, terms)
+        values["wrap"] = Angle(values["wrap"], "rad" if inputs["wrap"].unit.symbol == "rad" else "°")
         motion = Motion(**{x: values.pop(x) for x in MEASURED if x in values}, finds=finds)
         m1, m2, M, mu, mu_k, inertia, I = (values[x] for x in ("m1", "m2", "M", "mu", "mu_k", "inertia", "I"))
         for mass in MASSES:
@@ -345,35 +361,33 @@ class Scene(NamedTuple):
             refuse("I", f"contradicts M = {shortened(str(inputs['M'].given))}; leave one of them out")
         return cls(**values, motion=motion, terms=(*terms.items(),))
 
-    def given_as(self, x: str) -> Any:
-        """Return an input, or what was measured, as it was given."""
-        return dict(self.terms).get(x) or getattr(self if x in INPUTS else self.motion, x)
+    def own(self, x: str) -> Any:
+        """Return an input, or what was measured, in its own terms."""
+        return getattr(self if x in INPUTS else self.motion, x)
+
+    def unit_of(self, x: str) -> str:
+        """Return the unit of the number that was given for an input: one of the SI, ° or rad."""
+        terms = dict(self.terms).get(x)
+        return terms.unit if terms else self.wrap.unit if x == "wrap" else parameter_of(x).unit
 
     def number_of(self, x: str) -> Any:
-        """Return the number given for an input, in the unit that it was given in."""
-        given = self.given_as(x)
-        return getattr(given, "number", given)
+        """Return the number given for an input, in that unit."""
+        return self.wrap.number if x == "wrap" else self.in_terms_of(x, self.own(x))
 
     def in_terms_of(self, x: str, own: Any) -> Any:
         """Return a value of an input in the terms in which the input is given."""
-        given = self.given_as(x)
-        return own / given.terms.own(1, getattr(self, given.terms.by)) if isinstance(given, InTerms) else own
+        terms = dict(self.terms).get(x)
+        return terms.number(own, getattr(self, terms.by)) if terms else own
 
     def with_number(self, x: str, number: Any) -> Scene:
         """Return the scene with another number for an input, or for what was measured, in the same unit.
 
         What was given in other terms is converted anew, as that number may convert it.
         """
-        given, terms = self.given_as(x), dict(self.terms)
-        value: Any = given._replace(number=number) if isinstance(given, Angle | InTerms) else number
-        terms |= {x: value} if x in terms else {}
-        scene = self._with(x, value)._replace(terms=(*terms.items(),))
-        for name, given in terms.items():
-            scene = scene._with(name, given.terms.own(given.number, getattr(scene, given.terms.by)))
-        return scene
-
-    def _with(self, x: str, value: Any) -> Scene:
-        """Return the scene with another value of an input, or of what was measured, in its own terms."""
-        if x in INPUTS:
-            return self._replace(**{x: value})
-        return self._replace(motion=self.motion._replace(**{x: value}))
+        if x == "wrap":
+            return self._replace(wrap=self.wrap._replace(number=number))
+        terms = dict(self.terms)
+        by = {kind.by: getattr(self, kind.by) for kind in terms.values()}
+        values = in_own_terms({**by, **{name: self.number_of(name) for name in terms}, x: number}, terms)
+        measured = {name: values.pop(name) for name in MEASURED if name in values}
+        return self._replace(**values, motion=self.motion._replace(**measured))

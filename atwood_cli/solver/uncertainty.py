@@ -21,7 +21,7 @@ from ..numbers.interval import ZERO, decimal_context
 from .answers import TOO_SMALL, Answer, Answers
 from .inverse import found_inputs
 from .quantities import Undetermined
-from .scene import Scene, parameter_of
+from .scene import Input, Scene, parameter_of
 
 DIGITS, RIGHT_DIGITS = 48, 15
 NEGLIGIBLE = Decimal("1e-30")
@@ -61,15 +61,11 @@ class Spread(NamedTuple):
 class UncertainAnswers(Answers):
     """The quantities of a scene with standard uncertainties: of inputs, ``uncertain``, and of quantities."""
 
-    def __init__(self, scene: Scene, digits: int | None, uncertain: Mapping[str, Fraction]) -> None:
-        super().__init__(scene, digits)
-        self.uncertain = uncertain
+    def __init__(self, scene: Scene, digits: int | None, inputs: Mapping[str, Input]) -> None:
+        super().__init__(scene, digits, inputs)
+        self.uncertain = {x: read.uncertainty for x, read in inputs.items() if read.uncertainty}
         self._ends: dict[int, dict[str, tuple[End, End]]] = {}
         self._spreads: dict[str, Spread] = {}
-
-    @property
-    def given(self) -> tuple[Any, ...]:
-        return *super().given, self.uncertain
 
     def ends_at(self, n: int) -> dict[str, tuple[End, End]]:
         """Return each input n standard uncertainties below and above, each solved once."""

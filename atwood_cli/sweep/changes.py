@@ -108,7 +108,7 @@ def _turns(scene: Scene, along: Range) -> Iterator[Fraction]:
     if along.name in MASSES:
         other = scene.m1 if along.name == "m2" else scene.m2
         for mass in (other, other + Decisions(scene).axle_mass):
-            yield scene.in_terms_of(along.name, mass) / along.factor
+            yield scene.in_terms_of(along.name, mass) / along.unit.size
 
 
 def _between(

@@ -26,10 +26,10 @@ from ..numbers.digits import (
 )
 from ..numbers.interval import decimal_context
 from ..numbers.text import in_quotes
-from ..reading.inputs import read_exactly, read_value, read_whole
-from ..reading.units import MAX_DIGITS, read_number
+from ..reading.inputs import read_exactly, read_whole
+from ..reading.units import MAX_DIGITS
 from ..solver.answers import Answers
-from ..solver.scene import INPUTS, Input, Scene, SceneError, with_unit
+from ..solver.scene import INPUTS, Input, Scene, SceneError, Unit, with_unit
 
 MAX_POINTS, MAX_RANGES = 1_000_000, 2
 FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
@@ -55,18 +55,12 @@ def as_text(value: Fraction | Decimal | float) -> str:
 
 
 class Range(NamedTuple):
-    """An input that is swept over a range or a list: as typed, its points, and their unit.
-
-    A point times ``factor`` is the number of the scene, which carries a ``suffix`` in CSV and JSON if it is
-    an angle in radians, a torque or a weight.
-    """
+    """An input that is swept over a range or a list: as typed, its points, and their unit."""
 
     name: str
     typed: str
     points: list[Point]
-    unit: str
-    factor: Fraction
-    suffix: str
+    unit: Unit
 
     @property
     def is_list(self) -> bool:
@@ -99,11 +93,12 @@ class Range(NamedTuple):
 
     def at(self, value: Fraction | float, scene: Scene) -> Scene:
         """Return the scene at a value of the range."""
-        return scene.with_number(self.name, value * self.factor)
+        return scene.with_number(self.name, value * self.unit.size)
 
     def text(self, value: Fraction | float) -> str:
         """Return a value as `solve` takes it without a unit that is typed."""
-        return f"{as_text(value * self.factor)}{'' if value == inf else self.suffix}"
+        is_usual = value == inf or not (self.unit.terms or self.unit.symbol == "rad")
+        return f"{as_text(value * self.unit.size)}{'' if is_usual else _si_unit(self.name, self.unit)}"
 
     def printed(self, point: Point) -> Decimal | str:
         """Return a point for JSON and CSV, as text if it has a unit or is no decimal (1/3, inf)."""
@@ -116,7 +111,7 @@ class Range(NamedTuple):
 
     def in_units(self, value: Fraction | Decimal | float) -> str:
         """Return a value with its unit."""
-        return as_text(value) if value == inf else with_unit(as_text(value), self.unit)
+        return as_text(value) if value == inf else with_unit(as_text(value), self.unit.in_words)
 
     def in_words(self, point: Point) -> str:
         """Return a point in a sentence: M = 10 kg, or disk."""
@@ -124,10 +119,11 @@ class Range(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """Ranges, the first of which varies slowest, and the scene at their first finite values."""
+    """Ranges, the first of which varies slowest, the scene at their first finite values, and other inputs."""
 
     ranges: list[Range]
     scene: Scene
+    fixed: Mapping[str, Input]
 
     @property
     def total(self) -> int:
@@ -137,7 +133,7 @@ class Sweep(NamedTuple):
     def inputs(self) -> dict[str, str]:
         """Return the inputs, and the ranges, in words."""
         ranges = {range_.name: range_.words for range_ in self.ranges}
-        return inputs_with_effect(self.scene, ranges=ranges)
+        return inputs_with_effect(Answers(self.scene, None, self.fixed), ranges)
 
     @property
     def along(self) -> Range:
@@ -195,12 +191,12 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
     corners = ([(x, value) for value in (*x.ends, max(x.points).value)] for x in ranges)
     scene, *_ = (scene_at(fixed, corner) for corner in product(*corners))
-    if "g" in typed and (weights := [x for x, given in scene.terms if given.terms.by == "g"]):
+    if "g" in typed and (weights := [x for x, kind in scene.terms if kind.by == "g"]):
         rule = (
             f"cannot be swept beside {weights[0]}, a weight, whose mass would change; give {weights[0]} in kg"
         )
         raise SceneError("g", typed["g"], rule)
-    sweep = Sweep(ranges, scene)
+    sweep = Sweep(ranges, scene, fixed)
     if sweep.total > MAX_POINTS:
         rule = f"makes {sweep.total} points with {names[0]}; at most {MAX_POINTS} are taken"
         raise SceneError(names[1], typed[names[1]], rule)
@@ -251,24 +247,28 @@ def _read_points(name: str, typed: str, words: Sequence[str]) -> Range:
 
     They are in the unit that they all have, if that leaves them decimals in the SI.
     """
-    values = [read_value(name, word) for word in words]
-    numbers = [getattr(value, "number", value) for value in values]
+    read = [read_exactly(name, word) for word in words]
+    numbers = [x.number for x in read]
     names = [word.lower() if word.lower() in INPUTS[name].names else "" for word in words]
     # A name is typed neither with a unit nor without, and 0 is 0 in any.
-    plain = [i for i, number in enumerate(numbers) if number not in (0, inf) and not names[i]]
-    dimensions = INPUTS[name].dimensions or None
+    typed_units = {x.unit for x, word in zip(read, names, strict=True) if not (word or x.number in (0, inf))}
     # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
-    kinds = {(getattr(values[i], "unit", ""), not read_number(words[i], dimensions).unit) for i in plain}
-    if len(kinds) > 1:
+    if len({(_si_unit(name, unit), not unit.symbol) for unit in typed_units}) > 1:
         raise SceneError(name, typed, "mixes units; write the same unit at each number")
-    suffix = next((unit.replace("°", "") for unit, _ in kinds), "")
-    units = {(getattr(numbers[i], "factor", 1), getattr(numbers[i], "in_unit", "")) for i in plain}
-    factor, unit = units.pop() if len(units) == 1 else (1, "")
-    if factor == 1 or None in (exact_decimal(x) for x in (*numbers, factor) if x != inf):
-        factor, unit = 1, suffix or INPUTS[name].unit
-    exact = (number if number == inf else Fraction(as_typed(number / factor)) for number in numbers)
+    unit = next(iter(typed_units), Unit())
+    is_decimal = None not in (exact_decimal(x) for x in (*numbers, unit.size) if x != inf)
+    if typed_units != {unit} or unit.size == 1 or not is_decimal:
+        unit = Unit(_si_unit(name, unit), terms=unit.terms)
+    exact = (number if number == inf else Fraction(as_typed(number / unit.size)) for number in numbers)
     points = [Point(value, word) for value, word in zip(exact, names, strict=True)]
-    return Range(name, typed, points, unit.replace("2", "²"), Fraction(factor), suffix)
+    return Range(name, typed, points, unit)
+
+
+def _si_unit(name: str, unit: Unit) -> str:
+    """Return the unit of the SI, or ° or rad, for numbers of an input in a unit."""
+    if unit.terms:
+        return unit.terms.unit
+    return "rad" if unit.symbol == "rad" else INPUTS[name].unit
 
 
 def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: int | None) -> int:

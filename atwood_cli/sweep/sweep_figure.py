@@ -167,7 +167,7 @@ def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: 
 
 def _set_places(axes: "Axes", along: Range) -> None:
     """Set the x axis; that of a list has its values at equal distances, upright if there is no room."""
-    axes.set_xlabel(axis_title([along.name], along.unit))
+    axes.set_xlabel(axis_title([along.name], along.unit.in_words))
     if along.is_list:
         names = ["locked" if point == LOCKED else typeset(along.cell(point)) for point in along.points]
         rotation = 90 if len("  ".join(names)) > TICK_CHARACTERS else 0

@@ -39,7 +39,7 @@ class SweepPage:
         greatest = sweep.scene
         for range_ in sweep.ranges:
             greatest = range_.at(range_.ends[1], greatest)
-        self.remarks = [*map(unmarked, on_units(Answers(greatest).to_six_digits))]
+        self.remarks = [*map(unmarked, on_units(Answers(greatest, None, sweep.fixed).to_six_digits))]
         self.done = 0
         """The rows that are solved and, as JSON or CSV, written."""
 
@@ -104,7 +104,7 @@ class SweepPage:
             columns = {}
             for range_ in sweep.ranges:
                 points = [range_.cell(row.at[range_.name]) for row in rows]
-                unit = _in_brackets(range_.unit)
+                unit = _in_brackets(range_.unit.in_words)
                 named = any(point.name for point in range_.points)
                 columns[f"{range_.name}\n{unit}"] = points if named else aligned(points)
             for name in [name for name in shown if name not in same]:

@@ -7,9 +7,9 @@ from typing import Any
 
 from ..numbers.text import in_quotes
 from ..reading.inputs import read_input
-from ..reading.units import PERCENT, symbol_of
-from ..solver.scene import Angle, Input, InTerms, SceneError
-from .headings import ONE, Heading
+from ..reading.units import PERCENT
+from ..solver.scene import Input, SceneError
+from .headings import Heading
 
 EMPTY = ("", "NA", "NULL", "null")
 """The texts of cells without a number: R and databases write a word."""
@@ -51,24 +51,20 @@ def read_cell(heading: Heading, row: Sequence[Any], comma: bool) -> Input | None
     if text is None or text in EMPTY:
         return None
     try:
-        value, uncertainty, _ = read_input(heading.name, text)
+        read = read_input(heading.name, text)
     except SceneError as error:
         raise SceneError(heading.name, cell, error.rule) from None
-    terms, factor = (None, ONE) if has_unit(text) else (heading.terms, heading.factor)
-    if isinstance(value, Angle):
-        unit = value.unit if has_unit(text) or symbol_of(heading.unit) != "rad" else "rad"
-        return Input(Angle(value.number * factor, unit), uncertainty * factor, cell)
-    if isinstance(value, InTerms):
-        value, terms = value
-    if factor != 1:
-        value, uncertainty = value * factor, uncertainty and uncertainty * factor
+    if not has_unit(text):
+        number, spread = (x * heading.read.size for x in (read.number, read.uncertainty))
+        read = read._replace(number=number, uncertainty=spread, unit=heading.read)
+    spread = read.uncertainty
     if heading.u and (u := row[heading.u.place].strip()) not in EMPTY:
-        if uncertainty:
+        if spread:
             raise SceneError(heading.u.column, u, f"is a second uncertainty, beside {in_quotes(cell)}")
-        uncertainty = _read_uncertainty(heading.u, u, value, comma)
-    elif heading.stated and not uncertainty:
-        uncertainty = _read_uncertainty(heading._replace(unit=""), heading.stated, value, False)
-    return Input(InTerms(value, terms) if terms else value, uncertainty, cell)
+        spread = _read_uncertainty(heading.u, u, read.number, comma)
+    elif heading.stated and not spread:
+        spread = _read_uncertainty(heading._replace(unit=""), heading.stated, read.number, False)
+    return read._replace(uncertainty=spread, given=cell)
 
 
 def _read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool) -> Fraction:
@@ -82,4 +78,4 @@ def _read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool)
         raise SceneError(heading.column, cell, "is not an uncertainty; write it like 0.02 or 2%") from None
     if relative:
         return spread * abs(value)
-    return spread if has_unit(number) else spread * heading.factor
+    return spread if has_unit(number) else spread * heading.read.size

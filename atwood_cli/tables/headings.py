@@ -10,14 +10,13 @@ line "read as", or refused with what to type.
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from fractions import Fraction
 from shlex import quote
 from typing import NamedTuple
 from unicodedata import normalize
 
 from ..numbers.text import in_quotes, without_blanks
-from ..reading.units import PERCENT, UNITS, Malformed, read_unit, symbol_of, terms_of
-from ..solver.scene import SceneError, Terms, parameter_of
+from ..reading.units import PERCENT, UNITS, Malformed, read_unit, symbol_of
+from ..solver.scene import SceneError, Unit, parameter_of
 from .sources import Unreadable
 
 NO_UNIT = ("", "-", "1")
@@ -41,7 +40,6 @@ NO_MASS = "could be a sum or a difference of masses, which is not read"
 UNCERTAINTY = re.compile(r"u ?\((.+)\)|(.+?)[ _]err")
 OF_COLUMN_BEFORE = ("±", "+/-")
 """The names of columns that hold the uncertainties of the column before."""
-ONE = Fraction(1)
 
 
 class Vocabulary(NamedTuple):
@@ -57,7 +55,7 @@ class Vocabulary(NamedTuple):
 
 
 class Heading(NamedTuple):
-    """A column that holds a quantity: its place, its heading, the unit of its cells, that unit in SI units.
+    """A column that holds a quantity: its place, its heading, the unit of its cells as written and as read.
 
     ``number`` tells several columns of the quantity apart. ``u`` is the column of its uncertainties, which is
     ``uncertain``; without a name it belongs to the column before. ``stated`` is an uncertainty of all cells.
@@ -68,10 +66,9 @@ class Heading(NamedTuple):
     name: str
     number: str = ""
     unit: str = ""
-    factor: Fraction = ONE
+    read: Unit = Unit()
     u: "Heading | None" = None
     uncertain: bool = False
-    terms: Terms | None = None
     stated: str = ""
 
 
@@ -116,8 +113,7 @@ def read_headings(
             which, other = (same.column, column) if column in named else (column, same.column)
             why = f"holds {name}, as {in_quotes(other)} does; {way}"
             raise refused(which, why) if which != other else Unreadable(f"column {in_quotes(which)} {why}")
-        terms = terms_of(parameter_of(name), heading.unit)
-        headings[name, number] = heading._replace(number=number, factor=unit_factor(heading), terms=terms)
+        headings[name, number] = heading._replace(number=number, read=unit_of(heading))
     for heading in uncertain:
         _add_uncertainty(headings, heading)
     return list(headings.values())
@@ -143,7 +139,7 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
 
 
 def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Heading | None:
-    """Return what a column holds, without its place and factor; None if the heading is not known."""
+    """Return what a column holds, without its place and unit as read; None if the heading is not known."""
     text, stated, its_unit = _apart(column)
     for word, unit, is_loose in divisions(without_blanks(named.get(column, text))):
         meaning = _named(word, vocabulary)
@@ -215,9 +211,9 @@ def is_unit(unit: str, meaning: Heading) -> bool:
     """Decide whether a text is a unit of the quantity; of uncertainties also percent, or of any quantity."""
     if meaning.uncertain and (unit == PERCENT or not meaning.name):
         return unit == PERCENT or bool(symbol_of(unit))
-    if dimension := parameter_of(meaning.name).dimensions:
-        with suppress(Malformed):
-            return bool(read_unit(unit, dimension))
+    parameter = parameter_of(meaning.name)
+    with suppress(Malformed):
+        return bool(parameter.dimension and read_unit(unit, parameter.dimension, parameter.terms))
     return False
 
 
@@ -249,26 +245,26 @@ def _add_uncertainty(headings: dict[tuple[str, str], Heading], u: Heading) -> No
             raise refused(u.column, f"is a second uncertainty of {own.name}")
         its_u = u._replace(name=own.name, number=own.number)
         if u.unit in ("", PERCENT):
-            its_u = its_u._replace(factor=own.factor)
-        elif terms_of(parameter_of(own.name), u.unit) == own.terms:
-            its_u = its_u._replace(factor=unit_factor(its_u))
+            its_u = its_u._replace(read=own.read)
         else:
-            raise refused(u.column, f"has another kind of unit than {in_quotes(own.column)}")
+            its_u = its_u._replace(read=unit_of(its_u))
+            if its_u.read.terms != own.read.terms:
+                raise refused(u.column, f"has another kind of unit than {in_quotes(own.column)}")
         headings[own.name, own.number] = own._replace(u=its_u)
 
 
-def unit_factor(heading: Heading) -> Fraction:
-    """Return the factor from the unit of a column to SI units, or to degrees. Raises Unreadable."""
-    name, unit, column = heading.name, heading.unit, heading.column
-    if not unit:
-        return ONE
-    dimension = parameter_of(name).dimensions
+def unit_of(heading: Heading) -> Unit:
+    """Return the unit of a column. Raises Unreadable if its quantity has no such unit."""
+    parameter = parameter_of(heading.name)
+    if not heading.unit:
+        return Unit()
     try:
-        if not dimension:
-            raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
-        return read_unit(unit, dimension)
+        if not parameter.dimension:
+            raise Malformed(f"must hold plain numbers, without the {in_quotes(heading.unit)}")
+        return read_unit(heading.unit, parameter.dimension, parameter.terms)
     except Malformed as error:
-        raise refused(column, f"{error}; rename it", naming(heading) if dimension else "") from None
+        way = naming(heading) if parameter.dimension else ""
+        raise refused(heading.column, f"{error}; rename it", way) from None
 
 
 def naming(heading: Heading) -> str:
