@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from ..numbers.text import naming_the_extra
 from ..reading.names import read_quantities
 from ..tables.sources import Unreadable
-from .solving import ReadColumns, Tally, Wanted, read_columns, solve_cells
+from .solving import ReadColumns, TableTally, Wanted, read_columns, solve_cells
 
 if TYPE_CHECKING:
     import polars as pl
@@ -89,15 +89,15 @@ def _solve_pandas(frame: Any, wanted: Wanted) -> Any:
         cells[heading.name] = [
             None if absent else cell if of_numbers else str(cell) for cell, absent in pairs
         ]
-    results = solve_cells(pl.DataFrame(cells), columns, wanted, Tally())
+    results = solve_cells(pl.DataFrame(cells), columns, wanted, TableTally())
     return frame.assign(
         **{x.name: x.to_numpy() if x.dtype.is_float() else x.to_list() for x in results.iter_columns()}
     )
 
 
 def with_results(
-    frame: "pl.DataFrame", columns: ReadColumns, wanted: Wanted, tally: Tally | None = None
+    frame: "pl.DataFrame", columns: ReadColumns, wanted: Wanted, tally: TableTally | None = None
 ) -> "pl.DataFrame":
     """Return a frame of scenes with their results. Raises Unreadable for a column that holds no numbers."""
     cells = frame.select(frame[heading.column].alias(heading.name) for heading in columns.headings)
-    return frame.hstack(solve_cells(cells, columns, wanted, tally or Tally()))
+    return frame.hstack(solve_cells(cells, columns, wanted, tally or TableTally()))

@@ -34,7 +34,7 @@ from ..tables.sources import Unreadable, blocks_of, cannot_read, is_packed, is_s
 from ..tables.workbooks import opened_table
 from .frames import check_polars, with_results
 from .pieces import Csv, Piece, read_ndjson
-from .solving import ERROR, VOCABULARY, ReadColumns, Tally, Wanted, read_columns, solve_cells
+from .solving import ERROR, VOCABULARY, ReadColumns, TableTally, Wanted, read_columns, solve_cells
 
 if TYPE_CHECKING:
     import polars as pl
@@ -55,7 +55,7 @@ class Job(NamedTuple):
     markdown: bool = False
 
 
-def run_batch(job: Job, tally: Tally) -> list[str]:
+def run_batch(job: Job, tally: TableTally) -> list[str]:
     """Solve a table of scenes. Returns sentences on how it was read. Raises OSError."""
     check_polars()
     # As polars is imported, it takes Ctrl-C: a pipe would be waited for, and an interrupt raised twice.
@@ -96,7 +96,7 @@ def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> AbstractCo
     return progress(pieces, size, lambda piece: piece.size, lambda piece: len(piece.texts))
 
 
-def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
+def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: TableTally) -> list[str]:
     """Solve rows of cells: results follow with the separator and the decimal mark of the table."""
     wanted = job.wanted
     table = Csv(blocks_of(source), lambda columns: recognised(columns, VOCABULARY, wanted.named))
@@ -144,7 +144,7 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool, digits:
     return buffer.getbuffer()
 
 
-def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
+def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: TableTally) -> list[str]:
     """Solve lines, each of which is an object: results become its last members."""
     columns, wanted = ReadColumns([]), job.wanted
 
@@ -175,7 +175,7 @@ def _ndjson(piece: Piece, results: "pl.DataFrame") -> memoryview:
     return buffer.getbuffer()
 
 
-def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
+def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: TableTally) -> list[str]:
     """Solve Parquet, whose columns keep their types. Raises Unreadable, also for a file that is damaged.
 
     A thread writes while this one waits, as polars would not hear Ctrl-C.
@@ -242,12 +242,14 @@ def _reading() -> Iterator[None]:
 def _remarks(columns: ReadColumns, wanted: Wanted, table: Csv | None = None) -> list[str]:
     """Return sentences on how a table was read, if not as usual, and on the units of results then."""
     headings = [heading for heading in columns.headings if heading.place >= 0]
-    separator, above = (table.separator, [ABOVE][: table.above]) if table else ("", [])
-    remarks = read_as(headings, separator, columns.comma, above)
+    above = [ABOVE] if table and table.above else []
+    remarks = read_as(headings, table.separator if table else "", columns.comma, above)
     units = _units(wanted)
     if units and any(heading.read.size != 1 or heading.read.terms for heading in headings):
         remarks.append(f"results: {', '.join(f'{x} in {unit}' for x, unit in units.items())}.")
-    return [*remarks, *([f"not read: {listed(columns.not_read)}."] if columns.not_read else [])]
+    if columns.not_read:
+        remarks.append(f"not read: {listed(columns.not_read)}.")
+    return remarks
 
 
 def _units(wanted: Wanted) -> dict[str, str]:

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, partial
@@ -10,8 +10,9 @@ from math import inf, log10
 from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
-from ..explain.conditions import Condition, Failures, failures_of
+from ..explain.conditions import Condition, failures_of
 from ..explain.messages import LIKE_RADIANS, reasons_in
+from ..explain.tally import Tally
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     import polars as pl
 
 ERROR = "error"
+ASSUMPTION = ("regime", REGIME_ASSUMED)
 VOCABULARY = Vocabulary(MASS_NAMES | {name.replace("_", ""): name for name in INPUTS})
 
 GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta", "α": "alpha", "θ": "theta"})
@@ -144,61 +146,64 @@ def _meant(column: str) -> str:
 # Rows
 
 
+BEYOND, LIKE, UNLIKE = "beyond the doubles", "like radians", "unlike radians"
+
+
 @dataclass
-class Tally:
-    """The counts of a run, and the results that its rows lack."""
+class TableTally(Tally):
+    """The counts of the rows of a table."""
 
-    asked: Collection[str] = ()
-    """The results that the user names. Only of these it is said why they are missing, if there are any."""
-    had: set[str] = field(default_factory=set)
-    """Those of them that a row has had."""
-    rows: int = 0
-    regimes: Counter[str] = field(default_factory=Counter)
-    assumed: int = 0  # of the regimes
-    errors: int = 0
+    counts: Counter[str] = field(default_factory=Counter)
+    """Of regimes, errors, values and wraps, and of the masses in kg beside a weight."""
     first_error: str = ""
-    beyond: int = 0
-    like_radians: set[bool | None] = field(default_factory=set)
-    """Whether wraps are degrees that are probably radians, or turns; None for one that is not given."""
-    beside_weights: set[str] = field(default_factory=set)
-    """The masses in kg, without a unit, beside one that is given by its weight."""
-    reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
-    failures: Failures = field(default_factory=Failures)
 
-    def add(self, results: "pl.DataFrame", regimes: "pl.Series") -> None:
-        """Count the next rows by their results."""
-        self.had |= {name for name in self.asked if results[name].count()}
-        self.regimes.update({regime: count for regime, count in regimes.value_counts().iter_rows() if regime})
-        if bad := results.height - results[ERROR].null_count():
-            row = results[ERROR].is_not_null().arg_max() or 0
-            self.first_error = self.first_error or f"row {self.rows + row + 1}: {results[ERROR][row]}"
-            self.errors += bad
-        self.rows += results.height
+    def add(
+        self,
+        results: "pl.DataFrame",
+        reasons: Mapping[tuple[str, str], int],
+        failures: Mapping[int, Mapping[str, str]],
+        counts: Mapping[str, int],
+    ) -> None:
+        """Count the next rows by their results, ``failures`` by the places of rows."""
+        for row, failing in sorted(failures.items()):
+            self.count_failures(f"in row {self.rows + row + 1}", failing)
+        errors = results[ERROR]
+        if errors.count() and not self.first_error:
+            row = errors.is_not_null().arg_max() or 0
+            self.first_error = f"row {self.rows + row + 1}: {errors[row]}"
+        self.counts.update(dict(results["regime"].drop_nulls().value_counts().iter_rows()))
+        self.counts.update({ERROR: errors.count(), **counts})
+        self.count(results.height, (x.name for x in results if x.count()), reasons)
 
     def lines(self) -> list[str]:
         """Return the messages: the summary, why results are missing, the most first, and the first error."""
-        parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
-        if self.assumed:
-            some = f"{self.assumed} " if self.assumed < self.regimes["no-slip"] else ""
+        assumed, errors, beyond = self.reasons[ASSUMPTION], self.counts[ERROR], self.counts[BEYOND]
+        parts = [f"{self.counts[regime]} {regime}" for regime in REGIMES if self.counts[regime]]
+        if assumed:
+            some = f"{assumed} " if assumed < self.counts["no-slip"] else ""
             parts[0] += f" ({some}{REGIME_ASSUMED})"
-        counts = [", ".join(parts), counted(self.errors, "error") if self.errors else "no errors"]
-        if self.beyond:
-            counts.append(f"{counted(self.beyond, 'value')} beyond the range of doubles left empty")
+        counts = [", ".join(parts), counted(errors, "error") if errors else "no errors"]
+        if beyond:
+            counts.append(f"{counted(beyond, 'value')} beyond the range of doubles left empty")
         lines = [f"{counted(self.rows, 'row')}: {'; '.join(filter(None, counts))}."]
         explained = self.asked or STANDARD[:4]  # the regime and the motion
-        reasons = [(key, count) for key, count in self.reasons.items() if key[0] in explained]
-        ranked = sorted(reasons, key=lambda item: (-item[1], NAMES.index(item[0][0])))
-        lines += reasons_in(dict(ranked), self.rows)
-        if self.like_radians == {True}:
+        ranked = sorted(self.reasons.items(), key=lambda item: (-item[1], NAMES.index(item[0][0])))
+        lines += reasons_in({x: n for x, n in ranked if x[0] in explained and x != ASSUMPTION}, self.rows)
+        if self.counts[LIKE] and not self.counts[UNLIKE]:
             most = f"all wraps are less than {LIKE_RADIANS[1]}°"
             lines.append(f"{most}; if they are in radians or turns, say so, as in wrap (rad).")
-        lines += [f"{x} is in kg; for a weight give its unit, as {x} (N)." for x in self.beside_weights]
-        lines += [f"first error, in {self.first_error}"] if self.errors else []
-        return [*lines, *self.failures.lines(self.rows)]
+        bare = (x for x in MASSES if self.counts[x])
+        lines += [f"{x} is in kg; for a weight give its unit, as {x} (N)." for x in bare]
+        lines += [f"first error, in {self.first_error}"] if errors else []
+        return [*lines, *self.failures()]
 
 
 def solve_cells(
-    cells: "pl.DataFrame", columns: ReadColumns, wanted: Wanted, tally: Tally, unread: Mapping[int, str] = {}
+    cells: "pl.DataFrame",
+    columns: ReadColumns,
+    wanted: Wanted,
+    tally: TableTally,
+    unread: Mapping[int, str] = {},
 ) -> "pl.DataFrame":
     """Return the columns to append to rows with these cells: the results, and the errors of bad rows.
 
@@ -207,60 +212,84 @@ def solve_cells(
     """
     import polars as pl
 
-    from ..arrays import VALID, solve_and_count
-
     as_texts = pl.selectors.decimal() | pl.selectors.by_dtype(pl.Categorical, pl.Enum)
     cells = cells.with_columns(as_texts.cast(pl.String))
     exact = {x: read_exactly(x, wanted.given.get(x)) for x in INPUTS}
-    shared = {name: _double(Heading(0, name, name), False, text) for name, text in wanted.given.items()}
-    doubles, alone = _doubles(cells, columns)
-    if None in shared.values():
-        alone = {*range(cells.height)}
+    shared = {x: _double(Heading(0, x, x), False, text) for x, text in wanted.given.items()}
+    doubles, singles = _doubles(cells, columns)
+    if None in shared.values():  # an option that is no double
+        singles = {*range(cells.height)}
     rows = pl.int_range(cells.height, eager=True)
-    if unread or alone:
-        rows = rows.filter(~rows.is_in([*unread, *alone]))
-    # If an option is no double, no row is solved with it here.
+    if unread or singles:
+        rows = rows.filter(~rows.is_in([*unread, *singles]))
+    # No row is left here beside an option that is no double.
     given: Any = doubles[rows].to_dict() | {x: double or 0.0 for x, double in shared.items()}
-    wraps = pl.select(pl.lit(given.get("wrap")).is_between(*LIKE_RADIANS, closed="none")).to_series()
-    tally.like_radians |= {*wraps.unique(), *([None] if alone else [])}
-    terms = {heading.name: heading.read.terms for heading in columns.headings if heading.read.terms}
-    if any(x in terms or exact[x].unit.terms for x in MASSES):
-        bare = [x.name for x in columns.headings if x.name in MASSES and not x.unit]
-        tally.beside_weights |= {x for x in bare if cells[x].cast(pl.Float64, strict=False).count()}
-    solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names], terms)
-    regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
-    values = pl.DataFrame({**solved, "regime": regimes, "row": rows})
-    values = values.with_columns(pl.lit(None, pl.String).alias(ERROR))
-    alone |= {*values.filter(pl.col("status") != VALID)["row"]}
-    values = values.filter(pl.col("status") == VALID).drop("status")
-    as_typed = partial(_answers, columns, exact)
-    solve_row = cache(partial(_solve_row, as_typed, wanted.names))  # as many rows may be alike
-    records = list[Mapping[str, Any]]()
-    for row in sorted({*unread, *alone}):
-        record, lacking = ({ERROR: unread[row]}, ()) if row in unread else solve_row(cells.row(row))
+    values, reasons = _solve_together(given, columns, wanted.names)
+    values = values.with_columns(row=rows)
+    singles |= {*values.filter(pl.col(ERROR).is_not_null())["row"]}
+    values = values.filter(pl.col(ERROR).is_null())
+    failures = _judge(doubles, values["row"], columns, shared, wanted.conditions)
+    records: list[dict[str, Any]] = [{"row": row, ERROR: error} for row, error in unread.items()]
+    solve = cache(partial(_solve_row, columns, exact, wanted))  # as many rows may be alike
+    for row in singles - unread.keys():
+        record, lacking, failures[row] = solve(cells.row(row))
         records.append({"row": row, **record})
         reasons.update(lacking)
     if records:
         values = pl.concat([values, pl.DataFrame(records, values.schema)]).sort("row")
     numbers = pl.selectors.float()
-    tally.beyond += sum(map(sum, values.select(numbers.is_infinite().sum()).iter_rows()))
-    values = values.select(pl.when(numbers.is_finite()).then(numbers).name.keep(), "regime", ERROR)
+    beyond = sum(map(sum, values.select(numbers.is_infinite().sum()).iter_rows()))
+    results = values.select(pl.when(numbers.is_finite()).then(numbers).name.keep(), "regime", ERROR)
     if wanted.digits:
         to_digits = f"{{:.{wanted.digits - 1}e}}".format
-        values = values.with_columns(numbers.map_elements(lambda x: float(to_digits(x)), pl.Float64))
-    if wanted.conditions:
-        in_si = ReadColumns([x._replace(unit="", read=Unit(terms=x.read.terms)) for x in columns.headings])
-        as_doubles = partial(_answers, in_si, {x: read_exactly(x, shared.get(x)) for x in INPUTS})
-        failures = cache(lambda answers_of, inputs: failures_of(answers_of(inputs), wanted.conditions))
-        for row, error in enumerate(values[ERROR]):
-            if error is None:  # what is printed is judged
-                answers_of, inputs = (as_typed, cells) if row in alone else (as_doubles, doubles)
-                tally.failures.add(failures(answers_of, inputs.row(row)), f"in row {tally.rows + row + 1}")
-    tally.assumed += reasons.pop(("regime", REGIME_ASSUMED), 0)
-    tally.reasons.update(reasons)
-    results = values.select(*wanted.names, ERROR)
-    tally.add(results, values["regime"])
-    return results
+        results = results.with_columns(numbers.map_elements(lambda x: float(to_digits(x)), pl.Float64))
+    hints = _hints(cells, columns, exact, given.get("wrap"), len(singles))
+    tally.add(results, reasons, failures, {BEYOND: beyond, **hints})
+    return results.select(*wanted.names, ERROR)
+
+
+def _solve_together(
+    given: Mapping[str, Any], columns: ReadColumns, names: Sequence[str]
+) -> "tuple[pl.DataFrame, Counter[tuple[str, str]]]":
+    """Return the results of rows of doubles, those of bad rows with an error, and why results are missing."""
+    import polars as pl
+
+    from ..arrays import VALID, solve_and_count
+
+    terms = {heading.name: heading.read.terms for heading in columns.headings if heading.read.terms}
+    solved, reasons = solve_and_count(given, "exact", ["regime", *names], terms)
+    regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
+    error = pl.when(pl.col("status") != VALID).then(pl.lit("not valid")).alias(ERROR)
+    return pl.DataFrame({**solved, "regime": regimes}).with_columns(error).drop("status"), reasons
+
+
+def _judge(
+    doubles: "pl.DataFrame",
+    rows: Iterable[int],
+    columns: ReadColumns,
+    shared: Mapping[str, float | None],
+    conditions: Sequence[Condition],
+) -> dict[int, Mapping[str, str]]:
+    """Return the conditions that fail in rows of doubles, as what is printed is judged."""
+    in_si = ReadColumns([x._replace(unit="", read=Unit(terms=x.read.terms)) for x in columns.headings])
+    inputs = {x: read_exactly(x, shared.get(x)) for x in INPUTS}
+    judge = cache(lambda row: failures_of(_answers(in_si, inputs, row), conditions))
+    return {row: judge(doubles.row(row)) for row in rows} if conditions else {}
+
+
+def _hints(
+    cells: "pl.DataFrame", columns: ReadColumns, shared: Mapping[str, Input], wraps: Any, singles: int
+) -> dict[str, int]:
+    """Count wraps of plain degrees that are like radians or not, and plain masses beside a weight."""
+    import polars as pl
+
+    like = pl.select(pl.lit(wraps).is_between(*LIKE_RADIANS, closed="none")).to_series()
+    hints = {LIKE: (most := int(like.sum() or 0)), UNLIKE: len(like) + singles - most}
+    masses = [heading for heading in columns.headings if heading.name in MASSES]
+    if any(x.read.terms for x in masses) or any(shared[x].unit.terms for x in MASSES):
+        bare = (heading.name for heading in masses if not heading.unit)
+        hints |= {x: cells[x].cast(pl.Float64, strict=False).count() for x in bare}
+    return hints
 
 
 def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame, set[int]]":
@@ -314,7 +343,7 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
 
 
 def _double(heading: Heading, comma: bool, cell: str | float) -> float | None:
-    """Return a cell as the double nearest to it, in SI units or degrees; None if its row is solved alone.
+    """Return a cell as the double nearest to it, in SI units or degrees; None if its row is solved by itself.
 
     It may be no double, no number, uncertain, in radians, or in other terms than those of the heading.
     """
@@ -332,17 +361,18 @@ def _double(heading: Heading, comma: bool, cell: str | float) -> float | None:
 
 
 def _solve_row(
-    answers_of: Callable[[Sequence[Any]], Answers], names: Sequence[str], cells: Sequence[Any]
-) -> tuple[dict[str, Any], Iterable[tuple[str, str]]]:
-    """Return the results of a row, or its error, and the reasons of those that it lacks."""
+    columns: ReadColumns, shared: Mapping[str, Input], wanted: Wanted, cells: Sequence[Any]
+) -> tuple[dict[str, Any], Iterable[tuple[str, str]], Mapping[str, str]]:
+    """Return the results of a row, or its error, the reasons of those that it lacks, and what fails."""
     try:
-        answers = answers_of(cells)
+        answers = _answers(columns, shared, cells)
     except SceneError as error:
-        return {ERROR: str(error)}, ()
-    each = {name: answers.answer(name) for name in ("regime", *names)}
+        return {ERROR: str(error)}, (), {}
+    each = {name: answers.answer(name) for name in ("regime", *wanted.names)}
     reasons = {name: answer.reason for name, answer in each.items() if answer.reason}
     values = {name: answer.value for name, answer in each.items()}
-    return values, {*reasons.items(), *answers.decided.assumptions.items()}
+    lacking = {*reasons.items(), *answers.decided.assumptions.items()}
+    return values, lacking, failures_of(answers, wanted.conditions)
 
 
 def _answers(columns: ReadColumns, shared: Mapping[str, Input], cells: Sequence[Any]) -> Answers:

@@ -3,7 +3,7 @@
 import io
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from errno import EINVAL
 from importlib import import_module
 from typing import Annotated, Any
@@ -116,58 +116,67 @@ def run(arguments: list[str] | None = None) -> int:
         sys.stdout.reconfigure(errors="replace")  # for symbols that it cannot write
     try:
         arguments = sys.argv[1:] if arguments is None else arguments
-        if arguments[:1] == ["help"]:
+        if arguments and arguments[0] == "help":
             arguments = [*arguments[1:], "-h"]
         # Help, completion and hints must know all commands.
         is_one = arguments and arguments[0] in COMMANDS and COMPLETING not in os.environ
-        command = program(arguments[:1] if is_one else COMMANDS)
+        command = program([arguments[0]] if is_one else COMMANDS)
         with naming_the_extra():
             status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
         if status == ON_CTRL_C:
             raise KeyboardInterrupt
         sys.stdout.flush()
         return status
-    except (BrokenPipeError, SystemExit) as error:  # typer and rich exit if the reader of stdout has left
-        if isinstance(error, SystemExit) and COMPLETING in os.environ:  # fish goes by the status
-            return int(error.code or DONE)
-        drop(sys.stdout)
-        return DONE
-    except SceneError as error:
-        say(error.describe(flag(error.parameter)))
-        return WRONG_USAGE
-    except UsageError as error:
-        if possible := getattr(error, "possibilities", None):  # typer's are not that close
-            from difflib import get_close_matches
-
-            close = get_close_matches(
-                error.option_name.strip(DASHES), [word.strip(DASHES) for word in possible]
-            )
-            error.possibilities = [flag(word) for word in close]
-        hint = f"{error.ctx.command_path} -h" if error.ctx else ""
-        words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
-        message = shortened(words, LONGEST_NAME)
-        if "extra argument" in message:
-            message += ": names take commas, as a,T1; a value with a blank takes quotation marks, as '200 g'"
-        say(f"{message}{' See' if message.endswith('?') else '; see'} {hint}" if hint else message)
-        return WRONG_USAGE
     except (KeyboardInterrupt, typer.Abort):
         drop(sys.stdout)  # its reader may have stopped, and writing would wait for ever
         raise KeyboardInterrupt from None
-    except (ImportError, OSError, ArithmeticError, MemoryError) as error:
-        if os.name == "nt" and getattr(error, "errno", 0) == EINVAL:  # a pipe whose reader has left
-            drop(sys.stdout)
-            return DONE
-        say(_why(error))
-        return COULD_NOT
+    except SystemExit as error:  # typer and rich exit if the reader of stdout has left
+        drop(sys.stdout)
+        return int(error.code or DONE) if COMPLETING in os.environ else DONE  # fish goes by the status
+    except tuple(ERRORS) as error:
+        status, why = next(ERRORS[kind] for kind in type(error).__mro__ if kind in ERRORS)
+        if words := why(error):
+            say(words)
+            return status
+        drop(sys.stdout)  # its reader has left
+        return DONE
     finally:
         finish()
 
 
-def _why(error: Exception) -> str:
-    """Return the reason of an error, as a sentence."""
+def _why_not_understood(error: Any) -> str:
+    """Say what is wrong with the words of a command line."""
+    if possible := getattr(error, "possibilities", None):  # typer's are not that close
+        from difflib import get_close_matches
+
+        close = get_close_matches(error.option_name.strip(DASHES), [word.strip(DASHES) for word in possible])
+        error.possibilities = [flag(word) for word in close]
+    hint = f"{error.ctx.command_path} -h" if error.ctx else ""
+    words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
+    message = shortened(words, LONGEST_NAME)
+    if "extra argument" in message:
+        message += ": names take commas, as a,T1; a value with a blank takes quotation marks, as '200 g'"
+    return f"{message}{' See' if message.endswith('?') else '; see'} {hint}" if hint else message
+
+
+def _why_not_written(error: OSError) -> str:
+    """Say why an output cannot be written, "" if its reader has left."""
+    if isinstance(error, BrokenPipeError) or (os.name == "nt" and error.errno == EINVAL):
+        return ""
     if isinstance(error, io.UnsupportedOperation):
         return "cannot write the output: stdout is closed"
-    if isinstance(error, OSError) and error.errno is not None:  # without a number, it is a sentence of ours
-        file = shortened(str(error.filename or "the output"), LONGEST_NAME)
-        return f"cannot write {file}: {error.strerror}"
-    return "there is not enough memory" if isinstance(error, MemoryError) else str(error)
+    if error.errno is None:  # it is a sentence of ours
+        return str(error)
+    file = shortened(str(error.filename or "the output"), LONGEST_NAME)
+    return f"cannot write {file}: {error.strerror}"
+
+
+ERRORS: dict[type[Exception], tuple[int, Callable[[Any], str]]] = {
+    SceneError: (WRONG_USAGE, lambda error: error.describe(flag(error.parameter))),
+    UsageError: (WRONG_USAGE, _why_not_understood),
+    OSError: (COULD_NOT, _why_not_written),
+    ImportError: (COULD_NOT, str),
+    ArithmeticError: (COULD_NOT, str),
+    MemoryError: (COULD_NOT, lambda _: "there is not enough memory"),
+}
+"""The errors in which a command may end: the exit status, and what is said of them."""

@@ -100,7 +100,7 @@ def batch(
     force: Force = False,
 ) -> int:
     from ..batch.run import Job, run_batch
-    from ..batch.solving import VOCABULARY, Tally, Wanted
+    from ..batch.solving import ERROR, VOCABULARY, TableTally, Wanted
     from ..tables.headings import read_named
 
     asked = list(dict.fromkeys(read_names("only", only or [])))
@@ -115,7 +115,7 @@ def batch(
     named = read_named(column or (), VOCABULARY)
     wanted = Wanted(asked or STANDARD, label or (), named, conditions, shared, rounded_to)
     job = Job(table, kind, output, force, wanted, sheet, markdown)
-    tally = Tally(asked)
+    tally = TableTally(asked)
     try:
         remarks = run_batch(job, tally)
     except KeyboardInterrupt:
@@ -125,5 +125,6 @@ def batch(
     if output != STDOUT:
         say_written(output)
     say(*remarks, *tally.lines())
-    missing = {*asked} - tally.had and tally.rows > tally.errors
-    return COULD_NOT if missing or tally.failures.rows or (tally.errors and not allow_errors) else DONE
+    errors = tally.counts[ERROR]
+    missing = tally.missing and tally.rows > errors
+    return COULD_NOT if missing or tally.failed or (errors and not allow_errors) else DONE

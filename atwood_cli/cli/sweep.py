@@ -53,9 +53,9 @@ def sweep(
         page = partial(swept_page.print, table=picture is None or target.file is not None)
         aside = show(Report(swept_page.json, swept_page.records, page, swept_page.notes), target)
     except KeyboardInterrupt:
-        if swept_page.done:
-            say(f"stopped after {swept_page.done} of {counted(swept.total, 'row')}")
+        if done := swept_page.tally.rows:
+            say(f"stopped after {done} of {counted(swept.total, 'row')}")
         raise
-    say(*aside or [f"{name} has no value in any row" for name in names if name in swept_page.missing])
-    say(*swept_page.failures.lines(swept.total))
-    return COULD_NOT if swept_page.missing or swept_page.failures.rows else DONE
+    tally = swept_page.tally
+    say(*aside or [f"{name} has no value in any row" for name in tally.missing], *tally.failures())
+    return COULD_NOT if tally.missing or tally.failed else DONE

@@ -2,8 +2,7 @@
 
 import operator
 import re
-from collections import Counter
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -16,7 +15,7 @@ from ..numbers.digits import (
     rounding_apart_from,
     to_digits,
 )
-from ..numbers.text import counted, in_quotes
+from ..numbers.text import in_quotes
 from ..reading.names import NAMES_BY_SYMBOL, read_name
 from ..reading.units import Malformed, read_number
 from ..solver.answers import TOO_SMALL, Answers
@@ -89,24 +88,6 @@ def read_condition(typed: str) -> Condition:
 def failures_of(answers: Answers, conditions: Iterable[Condition]) -> dict[str, str]:
     """Return the conditions that fail, as typed, each with what holds instead."""
     return {condition.typed: why for condition in conditions if (why := failure(answers, condition))}
-
-
-class Failures:
-    """The conditions that fail: the first row that fails each, and how many do."""
-
-    def __init__(self) -> None:
-        self.first: dict[str, str] = {}
-        self.rows = Counter[str]()
-
-    def add(self, failures: Mapping[str, str], place: str) -> None:
-        """Count a row by what fails in it, if anything does."""
-        for typed, why in failures.items():
-            self.first.setdefault(typed, f"{place}: {why}")
-        self.rows.update(failures.keys())
-
-    def lines(self, total: int) -> list[str]:
-        """Return what to say of all rows."""
-        return [f"{why}; {self.rows[x]} of {counted(total, 'row')} failed" for x, why in self.first.items()]
 
 
 def failure(answers: Answers, expected: Condition) -> str:

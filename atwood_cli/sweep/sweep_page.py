@@ -1,15 +1,15 @@
 """A sweep as a table with its regimes, as JSON and as CSV."""
 
 import sys
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from fractions import Fraction
 from itertools import groupby
 
-from ..explain.conditions import Condition, Failures
+from ..explain.conditions import Condition
 from ..explain.given import VERSION, scene_record
-from ..explain.messages import on_units, reasons_in, unmarked
+from ..explain.messages import on_units, unmarked
+from ..explain.tally import Tally
 from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
 from ..output.page import Page, progress
 from ..output.text import aligned, cell
@@ -27,38 +27,32 @@ class SweepPage:
         self, sweep: Sweep, names: Sequence[str], digits: int | None, conditions: Sequence[Condition] = ()
     ) -> None:
         self.sweep, self.digits, self.conditions = sweep, digits, conditions
-        self.failures = Failures()
-        self.asked = set(names)
-        self.missing = set(names)
-        """The quantities that were asked for and that no row has."""
+        self.tally = Tally(names)
+        """The counts of the rows that are solved and, as JSON or CSV, written."""
         self.names = names or STANDARD
         # If a sentence says the regimes, they have a column only if it is asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
-        self.reasons: Counter[tuple[str, str]] = Counter()
         self.assumed: list[str] = []
         greatest = sweep.scene
         for range_ in sweep.ranges:
             greatest = range_.at(range_.ends[1], greatest)
         self.remarks = [*map(unmarked, on_units(Answers(greatest, None, sweep.fixed).to_six_digits))]
-        self.done = 0
-        """The rows that are solved and, as JSON or CSV, written."""
 
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
-        """Yield the rows, and count the reasons for missing values."""
+        """Yield the rows, and count them."""
         rows = solve_rows(self.sweep, names, digits, self.conditions)
         with progress(rows, self.sweep.total, rows=lambda row: 1) if watch else nullcontext(rows) as rows:
             for row in rows:
-                self.reasons.update(row.reasons.items())
                 self.assumed = [ASSUMED] if row.mu_assumed else self.assumed
-                self.missing = {name for name in self.missing if not cell(row.values[name])}
-                if row.failures:
-                    self.failures.add(row.failures, f"at {self.sweep.in_words(row.at)}")
                 yield row
-                self.done += 1
+                had = (name for name, value in row.values.items() if cell(value))
+                self.tally.count(1, had, dict.fromkeys(row.reasons.items(), 1))
+                if row.failures:
+                    self.tally.count_failures(f"at {self.sweep.in_words(row.at)}", row.failures)
 
     def notes(self) -> list[str]:
         """Say why values are missing, after all rows."""
-        return [*self.remarks, *reasons_in(self.reasons, self.sweep.total)]
+        return [*self.remarks, *self.tally.reasons_of(self.names)]
 
     def _all_notes(self) -> Iterator[str]:
         """Say what is assumed and why values are missing: an iterator that begins after all rows."""
@@ -98,7 +92,6 @@ class SweepPage:
         numbers = [name for name in same if name != "regime"]
         if shared := [f"{name} = {with_unit(same[name], QUANTITIES[name].unit)}" for name in numbers]:
             above.append(f"In all rows: {', '.join(shared)}.")
-        missing = {key: rows for key, rows in self.reasons.items() if key[0] in {*self.asked, *shown}}
         page.say(*above)
         if table and (len(same) < len(shown) or not shown):
             columns = {}
@@ -116,7 +109,7 @@ class SweepPage:
             groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
             parts = [[next(lines) for _ in group] for _, group in groups]
             page.table(list(columns), parts, keys=len(sweep.ranges))
-        page.say(*self.remarks, *reasons_in(missing, sweep.total))
+        page.say(*self.remarks, *self.tally.reasons_of([*self.tally.asked, *shown]))
 
 
 PULLEY = "critical_pulley_mass"
