@@ -4,8 +4,9 @@
 paragraph that applies is filled in. `typeset` puts it on a page.
 
 A paragraph of `derivation.md` is sentences, each in a line, and indented equations. Words in brackets are
-conditions, which must all hold; before a title they are those of the step. A paragraph with equations goes if
-none is left. Whatever an equation rests on stands above it; (1) is in every derivation. An equation is one of
+conditions, which must all hold; before a title they are those of the step. One that `_holds` and
+`_conditions` do not have is an attribute of `Decisions`. A paragraph with equations goes if none is left.
+Whatever an equation rests on stands above it; (1) is in every derivation. An equation is one of
 - `(27) mu_verge`: a value of the model, with its formula and numbers, if it exists and was not shown;
 - `half_sine from φ`: a value without its formula, and the symbols that it rests on;
 - `(4) c = rim_mass(m1 m2 a g b)`: an input that follows by a function of `physics`, with numbers put in;
@@ -190,7 +191,7 @@ def _fields(derivation: Derivation) -> dict[str, str]:
 
 
 def _holds(derivation: Derivation, condition: str, conditions: Mapping[str, bool]) -> bool:
-    """Decide a condition: one of ``conditions``, on an input, a regime, or a decision of `Decisions`."""
+    """Decide a condition: on an input, a regime, one of ``conditions``, or an attribute of `Decisions`."""
     decided = derivation.decided
     match condition.split():
         case ["not", *others]:
@@ -204,9 +205,7 @@ def _holds(derivation: Derivation, condition: str, conditions: Mapping[str, bool
             return derivation.answers[name] is not None
         case [regime] if regime in REGIMES:
             return decided.regime == regime
-    if condition in conditions:
-        return conditions[condition]
-    return bool(getattr(decided, condition.replace(" ", "_")))
+    return conditions[condition] if condition in conditions else bool(getattr(decided, condition))
 
 
 def _conditions(derivation: Derivation) -> dict[str, bool]:
