@@ -4,11 +4,14 @@ from fractions import Fraction
 from operator import eq, ge, gt, le, lt
 
 import mpmath
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli.explain.conditions import failure, read_condition
 from atwood_cli.reading.answers import read_answers
+from atwood_cli.solver.quantities import QUANTITIES
+from atwood_cli.solver.scene import SceneError
 
 from .conftest import examples
 
@@ -35,3 +38,14 @@ def test_it_is_decided_exactly(m1: int, m2: int, M: int, off: int, digits: int) 
     assert not failure(answers, read_condition(f"M* > {below}"))
     assert not failure(answers, read_condition(f"M*<{above}"))
     assert failure(answers, read_condition(f"M* >= {above}")).startswith("expected M* >= ")
+
+
+def test_a_quantity_whose_unit_nobody_reads_is_compared_with_plain_numbers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It ended in a KeyError, as the names of dimensions stood in a list of their own."""
+    monkeypatch.setitem(QUANTITIES, "torque", QUANTITIES["torque"]._replace(unit="kg furlong"))
+    answers = read_answers({"m1": 1, "m2": 3, "M": 10, "R": 1}, None)
+    assert failure(answers, read_condition("torque < 1")).endswith("it is 10.8963 kg furlong")
+    with pytest.raises(SceneError, match="must be a plain number, without the 'Nm'"):
+        read_condition("torque < 1Nm")

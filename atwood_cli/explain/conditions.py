@@ -17,13 +17,12 @@ from ..numbers.digits import (
 )
 from ..numbers.text import in_quotes
 from ..reading.names import NAMES_BY_SYMBOL, read_name
-from ..reading.units import Malformed, read_number
+from ..reading.units import UNITS, Malformed, read_number, symbol_of
 from ..solver.answers import TOO_SMALL, Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NO_NEED, QUANTITIES, REGIMES, Undetermined
 from ..solver.scene import (
     INPUTS,
-    MEASURED,
     MULTIPLE_OF_G,
     NOT_GIVEN,
     WEIGHT,
@@ -45,11 +44,6 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
 CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
-DIMENSIONS = {
-    **{parameter.unit: parameter.dimension for parameter in (*INPUTS.values(), *MEASURED.values())},
-    **{"N": "force", "N m": "torque"},
-}
-"""The dimension of a quantity, by its unit."""
 OTHER_TERMS = {"kg": [WEIGHT], "m/s²": [MULTIPLE_OF_G]}
 """The other terms in which a quantity may be compared, by its unit; g is the scene's."""
 
@@ -76,13 +70,18 @@ def read_condition(typed: str) -> Condition:
     name = read_name("expect", word, QUANTITIES, "quantity", NAMES_BY_SYMBOL)
     unit = QUANTITIES[name].unit
     try:
-        bound = read_number(number, DIMENSIONS.get(unit), OTHER_TERMS.get(unit, ()))
+        bound = read_number(number, dimension_of(unit), OTHER_TERMS.get(unit, ()))
     except Malformed as error:
         raise SceneError("expect", typed, f"compares with {in_quotes(number)}, which {error}") from None
     if bound.uncertainty and sign != "==":
         rule = "compares with an uncertain number, which only == takes: it holds within the uncertainty"
         raise SceneError("expect", typed, rule)
     return Condition(typed.strip(), name, sign, bound)
+
+
+def dimension_of(unit: str) -> str | None:
+    """Return the dimension of a unit, None if `UNITS` does not have it: its numbers are then plain."""
+    return next((dimension for dimension, units in UNITS.items() if symbol_of(unit) in units), None)
 
 
 def failures_of(answers: Answers, conditions: Iterable[Condition]) -> dict[str, str]:
