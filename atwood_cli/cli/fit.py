@@ -92,7 +92,7 @@ def fit(
     given = {"M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "g": g, "drop": drop}
     given |= {"m1": m1, "m2": m2, "hanger": hanger}
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
-    if "runs" in names and (not target.form or (target.form == "csv" and names[1:])):
+    if "runs" in names and (not target.form or (target.form == "csv" and len(names) > 1)):
         raise SceneError("only", "runs", "takes --json, or --csv and no other name")
     check_figure(picture)
     from ..laboratory import fit_of

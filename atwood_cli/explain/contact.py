@@ -84,8 +84,9 @@ def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
     def beyond_the_stuck_piece(machine: Machine[Any]) -> Any:
         return machine.ar.number(from_light) * machine.phi - machine.arcs(kind)[0].end.angle
 
-    piece = int(kind == "creep" and is_positive(answers.in_any_arithmetic(beyond_the_stuck_piece)))
-    stuck = (kind == "creep" and piece == 0) or answers.decided.frictionless
+    stuck = answers.decided.frictionless or (
+        kind == "creep" and not is_positive(answers.in_any_arithmetic(beyond_the_stuck_piece))
+    )
 
     def tension(machine: Machine[Any]) -> Any:
         # Tensions at both ends are exact, and so is that of a piece stuck from the light end on.
@@ -94,7 +95,7 @@ def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
         if from_light == 1:
             return machine.heavy_tension
         angle = machine.ar.number(from_light) * machine.phi
-        return arc.tension(machine.ar, machine.arcs(kind)[piece], angle)
+        return arc.tension(machine.ar, machine.arcs(kind)[-1], angle)
 
     def friction(machine: Machine[Any]) -> Any:
         return machine.ar.number(0) if stuck else machine.arc_mu(kind) * tension(machine) * sign

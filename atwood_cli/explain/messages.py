@@ -134,7 +134,8 @@ def in_typed_units(answers: Answers, names: Sequence[str]) -> list[str]:
     sentences = list[str]()
     for name in names:
         by_input = (_in_unit_of(answers, name, x) for x in LIMITS.get(name, ()) if answers[name])
-        sentences += [*filter(None, by_input)][:1]
+        if words := next(filter(None, by_input), ""):
+            sentences.append(words)
     return sentences
 
 

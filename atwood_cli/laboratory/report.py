@@ -206,7 +206,7 @@ def _rows(fit: Fitted, runs: Sequence[Mapping[str, Any]]) -> list[list[str]]:
         numbers = cut(run[fit.runs.kind], finest), cut(run["expected"], finest), cut(u, u)
         last = "" if residual is None else f"{residual:z.2f}"
         first, *others = run["rows"].split()
-        is_range = others[1:] and int(others[-1]) - int(first) == len(others)  # numbers of rows ascend
+        is_range = len(others) > 1 and int(others[-1]) - int(first) == len(others)  # numbers of rows ascend
         row = f"{first}–{others[-1]}" if is_range else ",".join([first, *others])
         rows.append([row, *masses, *numbers, last])
     return rows

@@ -82,9 +82,9 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
     given = inputs_with_effect(answers)
     above = [", ".join(given.values()), unmarked(verdict(answers))]
-    panels = 2 if curves else 1
-    with drawing(picture, above, " ".join(below), panels) as figure:
-        machine, *more = figure.subplots(panels, height_ratios=[1.6, 1][:panels], squeeze=False).flat
+    heights = [1.6, 1] if curves else [1]
+    with drawing(picture, above, " ".join(below), len(heights)) as figure:
+        machine, *more = figure.subplots(len(heights), height_ratios=heights, squeeze=False).flat
         machine.axis("off")
         machine.set_aspect("equal", adjustable="datalim")
         machine.margins(0.01)

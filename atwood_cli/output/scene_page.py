@@ -31,7 +31,7 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
         "version": VERSION,
         "scene": scene_record(answers.decided.scene, answers.round),
         "terms": terms_record(answers.decided.scene, answers.round),
-        "found": [*filter(None, [answers.decided.motion.finds])],
+        "found": [answers.decided.motion.finds] if answers.decided.motion.finds else [],
         "regime": answers.decided.regime,
         **absent,
         **results,

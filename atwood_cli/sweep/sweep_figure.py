@@ -160,7 +160,7 @@ def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: 
             _set_heights(axes, _numbers(curves))
             if axes.get_legend_handles_labels()[1]:
                 axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), handlelength=3, labelspacing=0.3)
-        first = panels[0][: len(panels[0]) // len(quantities[0])]
+        first = [curve for curve in panels[0] if curve.quantity == panels[0][0].quantity]
         labels = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
         write_beside(all_axes[0], labels, all_or_none=True)
 

@@ -31,7 +31,7 @@ class SweepPage:
         """The counts of the rows that are solved and, as JSON or CSV, written."""
         self.names = names or STANDARD
         # If a sentence says the regimes, they have a column only if it is asked for.
-        self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
+        self.columns = self.names if names or len(sweep.ranges) > 1 else STANDARD[1:]
         self.assumed: list[str] = []
         greatest = sweep.scene
         for range_ in sweep.ranges:
@@ -106,7 +106,7 @@ class SweepPage:
             lines = zip(*columns.values(), strict=True)
             # Groups are the points of the range that varies slowly, or the regimes along a single range.
             slow = sweep.ranges[0].name
-            groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
+            groups = groupby(rows, lambda row: row.at[slow] if len(sweep.ranges) > 1 else row.regime)
             parts = [[next(lines) for _ in group] for _, group in groups]
             page.table(list(columns), parts, keys=len(sweep.ranges))
         page.say(*self.remarks, *self.tally.reasons_of([*self.tally.asked, *shown]))

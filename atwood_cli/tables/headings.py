@@ -290,7 +290,7 @@ def refused(column: str, why: str, way: str = "") -> Unreadable:
 def left_unread(*columns: str) -> str:
     """Return the options that leave columns unread, to stand behind an error."""
     labels = " ".join(f"--label {_as_typed(column)}" for column in columns)
-    return f"; {labels} {'leave them' if columns[1:] else 'leaves it'} unread"
+    return f"; {labels} {'leaves it' if len(columns) == 1 else 'leave them'} unread"
 
 
 def _as_typed(word: str) -> str:
@@ -342,7 +342,7 @@ def read_as(
         [", ".join(names) + words for (is_assumed, words), names in alike.items() if is_assumed is which]
         for which in (False, True)
     )
-    marks = ["cells separated by semicolons"] * (separator == ";") + ["decimal commas"] * comma
-    clauses = [", ".join([*marks, *given, *others])]
+    marks = {"cells separated by semicolons": separator == ";", "decimal commas": comma}
+    clauses = [", ".join([*(mark for mark, has_it in marks.items() if has_it), *given, *others])]
     clauses += [", ".join([*assumed, "as no unit is given"])] if assumed else []
     return [f"read as: {'; '.join(filter(None, clauses))}."] if any(clauses) else []

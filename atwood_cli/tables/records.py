@@ -61,7 +61,7 @@ def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) ->
             rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
             for above, row in enumerate(islice(rows, MOST_ABOVE + 1)):
                 count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
-                headers.append(((count * (count > 1), words, len(row)), count, separator, above))
+                headers.append(((count if count > 1 else 0, words, len(row)), count, separator, above))
                 if count > 1:
                     break
     return max(headers, key=lambda header: header[0], default=(0, 0, SEPARATORS[0], 0))[1:]

@@ -85,7 +85,8 @@ def workbook_as_csv(file: IO[bytes], name: str | None) -> tuple[bytes, list[str]
     buffer = StringIO()
     lines = ([cells.get((row, column), "") for column in columns] for row in rows)
     csv.writer(buffer, lineterminator="\n").writerows(lines)
-    return buffer.getvalue().encode(), [f"sheet {in_quotes(shown)} of {names}"][: len(sheets) - 1]
+    remarks = [f"sheet {in_quotes(shown)} of {names}"] if len(sheets) > 1 else []
+    return buffer.getvalue().encode(), remarks
 
 
 def _part(archive: ZipFile, name: str) -> Element:
