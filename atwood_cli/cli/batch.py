@@ -47,6 +47,20 @@ OutTable = Annotated[
         help="Write to this file, in the format of IN; - for stdout, if not given.",
     ),
 ]
+From = Annotated[
+    str | None,
+    option(
+        "Files",
+        "--from",
+        metavar="|".join(FORMATS),
+        words=lambda: dict.fromkeys(FORMATS, ""),
+        help="Format of IN, if not that of its suffix.",
+    ),
+]
+Rounded = Annotated[
+    str | None,
+    option("Output", metavar="N", help="Round results, the nearest doubles, to N digits, 1 to 17."),
+]
 HELP = f"""Solve a table of scenes and append the results.
 
 \b
@@ -74,25 +88,13 @@ def batch(
     given: Mapping[str, str | None],
     *,
     output: OutTable = None,
-    from_: Annotated[
-        str | None,
-        option(
-            "Files",
-            "--from",
-            metavar="|".join(FORMATS),
-            words=lambda: dict.fromkeys(FORMATS, ""),
-            help="Format of IN, if not that of its suffix.",
-        ),
-    ] = None,
+    from_: From = None,
     column: Named = None,
     label: Labels = None,
     sheet: SheetName = None,
     only: Columns = None,
     expect: Expect = None,
-    digits: Annotated[
-        str | None,
-        option("Output", metavar="N", help="Round results, the nearest doubles, to N digits, 1 to 17."),
-    ] = None,
+    digits: Rounded = None,
     markdown: Annotated[bool, option("Output", "--markdown", help=FORMS["markdown"].help)] = False,
     allow_errors: Annotated[
         bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")

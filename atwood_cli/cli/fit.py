@@ -1,6 +1,7 @@
 """`atwood fit`: the pulley's inertia and its axle's friction, from runs of a laboratory."""
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..output.forms import Destination, Picture, show
@@ -64,33 +65,33 @@ rim, c = I/R², for a disk M/2; axle is the axle's friction as a force at the ri
 """
 
 
-@with_options(OUTPUT, FIGURE)
+def _shared(**remarks: str | None) -> dict[str, Any]:
+    return {name: Annotated[str | None, scene_option(name, remark)] for name, remark in remarks.items()}
+
+
+SHARED = {
+    **_shared(drop=", of all runs", m1=", of all runs", m2=", of all runs"),
+    "hanger": Annotated[str | None, option("Scene", metavar="MASS", help="Mass to add to m1 and to m2.")],
+    **_shared(M=", if it is known", inertia="; adds pulley_mass", I="; needs R"),
+    **_shared(R="; adds moment_of_inertia", axle="", g=None),
+}
+"""The options of what all runs share."""
+
+
+@with_options(OUTPUT, FIGURE, SHARED)
 def fit(
     table: Table,
+    given: Mapping[str, str | None],
     target: Destination,
     picture: Picture | None,
     *,
     find: Find = None,
     without: Without = None,
-    drop: Annotated[str | None, scene_option("drop", ", of all runs")] = None,
-    m1: Annotated[str | None, scene_option("m1", remark=", of all runs")] = None,
-    m2: Annotated[str | None, scene_option("m2", remark=", of all runs")] = None,
-    hanger: Annotated[
-        str | None, option("Scene", metavar="MASS", help="Mass to add to m1 and to m2.")
-    ] = None,
-    M: Annotated[str | None, scene_option("M", remark=", if it is known")] = None,
-    inertia: Annotated[str | None, scene_option("inertia", remark="; adds pulley_mass")] = None,
-    I: Annotated[str | None, scene_option("I", remark="; needs R")] = None,
-    R: Annotated[str | None, scene_option("R", remark="; adds moment_of_inertia")] = None,
-    axle: Annotated[str | None, scene_option("axle", remark="")] = None,
-    g: Annotated[str | None, scene_option("g")] = None,
     column: Named = None,
     label: Labels = None,
     sheet: SheetName = None,
     only: Only = None,
 ) -> int:
-    given = {"M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "g": g, "drop": drop}
-    given |= {"m1": m1, "m2": m2, "hanger": hanger}
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
     if "runs" in names and (not target.form or (target.form == "csv" and len(names) > 1)):
         raise SceneError("only", "runs", "takes --json, or --csv and no other name")

@@ -98,8 +98,7 @@ SCENE, MOTION = (
 def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
     """Give a command groups of options by name, which typer sees one by one.
 
-    The command gets those of SCENE and MOTION as ``given``, those of `results` as ``target``, and those of
-    FIGURE as ``picture``.
+    The command gets those of `results` as ``target``, those of FIGURE as ``picture``, others as ``given``.
     """
 
     def taking(command: Command) -> Command:
@@ -111,7 +110,8 @@ def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
             _check(options)
             arguments = {parameter.name: options[parameter.name] for parameter in own}
             if "given" in taken:
-                arguments["given"] = {name: options[name] for name in SCENE | MOTION if name in options}
+                names = (name for group in groups for name in group if name not in {*OUTPUT, *FIGURE})
+                arguments["given"] = {name: options[name] for name in names}
             if "target" in taken:
                 arguments["target"] = _read_target(options)
             if FIGURE in groups:
@@ -215,19 +215,10 @@ Force = Annotated[bool, option("Files", "--force", help="Replace an existing fil
 
 def results(*forms: str) -> dict[str, Any]:
     """Return the options that choose the form of a result among these, and the file that it goes to."""
-    suffixes = ", ".join(FORMS[form].suffix for form in forms)
+    text = f"Write to FILE, by its suffix: {', '.join(FORMS[form].suffix for form in forms)}, .txt."
     return {
         **{form: Annotated[bool, option("Output", flag(form), help=FORMS[form].help)] for form in forms},
-        "output": Annotated[
-            str | None,
-            option(
-                "Files",
-                "--output",
-                "-o",
-                metavar="FILE",
-                help=f"Write to FILE, by its suffix: {suffixes}, .txt.",
-            ),
-        ],
+        "output": Annotated[str | None, option("Files", "--output", "-o", metavar="FILE", help=text)],
         "force": Force,
     }
 

@@ -1,6 +1,7 @@
 """`atwood quantities`: the quantities that can be asked for by name."""
 
 import sys
+from operator import attrgetter
 from shutil import get_terminal_size
 from typing import Annotated
 
@@ -33,12 +34,9 @@ Names = Annotated[list[str] | None, argument("Output", "[NAMES]", "Only these qu
 
 @with_options(OUTPUT)
 def quantities(target: Destination, names: Names = None) -> int:
-    """Run the command."""
     columns = ("name", "symbol", "unit", "meaning", "equation")
     rows = [("regime", "", "", f"what the string does: {', '.join(REGIMES)}", "")]
-    rows += [
-        (name, *(getattr(about, column) for column in columns[1:])) for name, about in QUANTITIES.items()
-    ]
+    rows += [(name, *attrgetter(*columns[1:])(about)) for name, about in QUANTITIES.items()]
     if names:
         wanted = read_names("NAME", names, ("regime", *QUANTITIES))
         rows = [row for row in rows if row[0] in wanted]

@@ -21,17 +21,7 @@ from ..reading.units import UNITS, Malformed, read_number, symbol_of
 from ..solver.answers import TOO_SMALL, Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NO_NEED, QUANTITIES, REGIMES, Undetermined
-from ..solver.scene import (
-    INPUTS,
-    MULTIPLE_OF_G,
-    NOT_GIVEN,
-    WEIGHT,
-    Angle,
-    Input,
-    Scene,
-    SceneError,
-    with_unit,
-)
+from ..solver.scene import INPUTS, MULTIPLE_OF_G, NOT_GIVEN, WEIGHT, Angle, Input, SceneError, with_unit
 from .messages import ends_nearby, unmarked
 
 COMPARISON = re.compile("([^<>=]*)(<=|>=|==|<|>)([^<>=]*)")
@@ -133,7 +123,7 @@ def _instead(answers: Answers, expected: Condition) -> str:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
         return f"{expected.name} has {why}"
     bound = expected.bound
-    given = None if bound.unit.symbol == "rad" else _in_si(bound, answers.decided.scene)
+    given = None if bound.unit.symbol == "rad" else _in_its_unit(answers, bound)
     if given is not None and not _above(answers, expected.name, bound):
         # Digits would not show that the two are equal.
         shown = as_typed(given)
@@ -151,19 +141,15 @@ def _above(answers: Answers, name: str, bound: Input) -> float | Decimal:
     """Return a quantity less the number that it is compared with, to one digit. Raises Undetermined."""
 
     def difference(machine: Any) -> Any:
-        return getattr(machine, name) - _bound(machine, bound)
+        number: Any = _in_its_unit(answers, bound)
+        if bound.unit.symbol == "rad":
+            return getattr(machine, name) - Angle(number, "rad").degrees(machine.ar)
+        return getattr(machine, name) - machine.ar.number(number)
 
     return answers.settle(difference, to_digits(1))
 
 
-def _bound(machine: Any, bound: Input) -> Any:
-    """Return the number in the arithmetic of a machine; an angle in degrees."""
-    if bound.unit.symbol == "rad":
-        return Angle(bound.number, "rad").degrees(machine.ar)
-    return machine.ar.number(_in_si(bound, machine.scene))
-
-
-def _in_si(bound: Input, scene: Scene) -> Fraction:
-    """Return the number in the unit of the quantity."""
+def _in_its_unit(answers: Answers, bound: Input) -> Fraction:
+    """Return the number in the unit of the quantity; radians stay radians."""
     number, kind = Fraction(bound.number), bound.unit.terms
-    return kind.own(number, getattr(scene, kind.by)) if kind else number
+    return kind.own(number, getattr(answers.decided.scene, kind.by)) if kind else number

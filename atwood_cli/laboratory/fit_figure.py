@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..output.figure import BLUE, FAINT, INK, RED, drawing, typeset, write_beside
+from ..output.figure import BLUE, FAINT, INK, RED, saved, typeset, write_beside
 from ..output.forms import Picture
 from ..solver import physics
 from .estimate import accelerations, as_data
@@ -37,7 +37,7 @@ def save(fit: Fitted, picture: Picture) -> None:
     below = " ".join(words for words, holds in captions.items() if holds)
     fitted = [x for x in MEANING if x in fit.results]
     results = [equation(x, *fit.results[x][:2]).replace(x, MEANING[x]) for x in fitted]
-    with drawing(picture, [conditions(fit), verdict(fit)], below, panels=2) as figure:
+    with saved(picture, [conditions(fit), verdict(fit)], below, panels=2) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
         for axes in line, rest:
             axes.margins(0, 0.15)

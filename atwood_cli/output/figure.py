@@ -85,7 +85,7 @@ def check_picture(picture: Picture) -> None:
 
 
 @contextmanager
-def drawing(picture: Picture, above: Sequence[str], below: str = "", panels: int = 1) -> Iterator["Figure"]:
+def saved(picture: Picture, above: Sequence[str], below: str = "", panels: int = 1) -> Iterator["Figure"]:
     """Yield a figure with room for so many panels, below each other, save it and say so. Raises OSError.
 
     The sentences ``above`` are written unless it is bare, or has symbols alone. In the file, the first of

@@ -18,19 +18,7 @@ from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..solver import arc
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
-from .figure import (
-    BLUE,
-    FAINT,
-    GREEN,
-    INK,
-    ORANGE,
-    PURPLE,
-    RED,
-    check_picture,
-    drawing,
-    typeset,
-    write_beside,
-)
+from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_picture, saved, typeset, write_beside
 from .forms import Picture
 
 if TYPE_CHECKING:
@@ -59,10 +47,8 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
     doubles, forces = answers.rounded_to(None), dict[str, float]()
     for end, mass in (("1", decided.scene.m1), ("2", decided.scene.m2)):
         if mass:
-            forces |= {
-                f"T{end}": float(doubles[f"tension_{end}"]),
-                f"W{end}": to_double(mass * decided.scene.g),
-            }
+            forces[f"T{end}"] = float(doubles[f"tension_{end}"])
+            forces[f"W{end}"] = to_double(mass * decided.scene.g)
     least = min(force for name, force in forces.items() if kind or name[0] == "W")
     wrap = float(doubles.settle(lambda m: decided.scene.wrap.degrees(m.ar)))
     if not (LEAST <= least <= max(forces.values()) <= MOST_FORCE and LEAST <= wrap <= MOST_WRAP):
@@ -83,7 +69,7 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
     given = inputs_with_effect(answers)
     above = [", ".join(given.values()), unmarked(verdict(answers))]
     heights = [1.6, 1] if curves else [1]
-    with drawing(picture, above, " ".join(below), len(heights)) as figure:
+    with saved(picture, above, " ".join(below), len(heights)) as figure:
         machine, *more = figure.subplots(len(heights), height_ratios=heights, squeeze=False).flat
         machine.axis("off")
         machine.set_aspect("equal", adjustable="datalim")
@@ -240,15 +226,11 @@ def _draw_masses(axes: "Axes", answers: Answers, lengths: Mapping[str, float]) -
         axes.fill_between([x - side / 2, x + side / 2], top, bottom, fc="#e3ddcf", ec=INK, lw=1, zorder=3)
         _draw_arrows(axes, [x + top * 1j], [pull * 1j], INK)
         _draw_arrows(axes, [x + bottom * 1j], [-weight * 1j], GREEN)
+        tension, force = _number(answers[f"tension_{end}"]), _number(answers.round(mass * scene.g))
         for away, height, words, colour in (
-            (0.12, top + max(pull / 2, 0.17), f"T{end} = {_number(answers[f'tension_{end}'])} N", INK),
+            (0.12, top + max(pull / 2, 0.17), f"T{end} = {tension} N", INK),
             (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_mass(f'm{end}', mass, answers)}", INK),
-            (
-                0.12,
-                bottom - max(weight / 2, 0.17),
-                f"W{end} = {_number(answers.round(mass * scene.g))} N",
-                GREEN,
-            ),
+            (0.12, bottom - max(weight / 2, 0.17), f"W{end} = {force} N", GREEN),
         ):
             look: Any = {"color": colour, "ha": "left" if x > 0 else "right", "va": "center"}
             axes.text(x * (1 + away), height, typeset(words), **look)

@@ -84,24 +84,20 @@ def as_json(value: object, indent: str = "\n") -> Iterator[str]:
     inner = indent + "  "
     match value:
         case Mapping():
-            yield "{"
-            comma = ""
-            for key, item in value.items():
-                yield f"{comma}{inner}{json.dumps(key)}: "
-                yield from as_json(item, inner)
-                comma = ","
-            yield f"{indent}}}"
+            start, end, items = "{", "}", ((f"{json.dumps(key)}: ", item) for key, item in value.items())
         case list() | Iterator():
-            start = "["
-            for item in value:
-                yield f"{start}{inner}"
-                yield from as_json(item, inner)
-                start = ","
-            yield "[]" if start == "[" else f"{indent}]"
+            start, end, items = "[", "]", (("", item) for item in value)
         case float() | Decimal():
             yield cell(value) or "null"
+            return
         case _:
             yield json.dumps(value)
+            return
+    for key, item in items:
+        yield f"{start}{inner}{key}"
+        yield from as_json(item, inner)
+        start = ","
+    yield "[]" if start == "[" else f"{start.removeprefix(',')}{indent}{end}"
 
 
 def cell(value: object) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..explain.messages import unmarked
 from ..numbers.digits import is_infinite
-from ..output.figure import COLOURS, FAINT, INK, axis_words, check_picture, drawing, typeset, write_beside
+from ..output.figure import COLOURS, FAINT, INK, axis_words, check_picture, saved, typeset, write_beside
 from ..output.forms import Picture
 from ..output.text import wrapped
 from ..solver.answers import Answers
@@ -145,7 +145,7 @@ def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: 
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
     title = f"{axis_title(chain(*quantities))} against {axis_title([along.name])}"
     above = [title[0].upper() + title[1:], ", ".join(inputs)]
-    with drawing(picture, above, panels=len(panels)) as figure:
+    with saved(picture, above, panels=len(panels)) as figure:
         all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
         _set_places(all_axes[-1], along)
         for axes, curves, drawn in zip(all_axes, panels, quantities, strict=True):

@@ -97,12 +97,11 @@ class SweepPage:
             columns = {}
             for range_ in sweep.ranges:
                 points = [range_.cell(row.at[range_.name]) for row in rows]
-                unit = _in_brackets(range_.unit.in_words)
                 named = any(point.name for point in range_.points)
-                columns[f"{range_.name}\n{unit}"] = points if named else aligned(points)
+                columns[_head(range_.name, range_.unit.in_words)] = points if named else aligned(points)
             for name in [name for name in shown if name not in same]:
-                unit = _in_brackets(QUANTITIES[name].unit) if name in QUANTITIES else ""
-                columns[f"{name}\n{unit}"] = aligned(shown[name])
+                unit = QUANTITIES[name].unit if name in QUANTITIES else ""
+                columns[_head(name, unit)] = aligned(shown[name])
             lines = zip(*columns.values(), strict=True)
             # Groups are the points of the range that varies slowly, or the regimes along a single range.
             slow = sweep.ranges[0].name
@@ -136,5 +135,5 @@ def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[
         yield f"Regime of all rows: {rows[0].regime}."
 
 
-def _in_brackets(unit: str) -> str:
-    return f"({unit})" if unit else ""
+def _head(name: str, unit: str) -> str:
+    return f"{name}\n({unit})" if unit else f"{name}\n"

@@ -8,7 +8,7 @@ from operator import attrgetter
 
 from ..explain.given import VERSION
 from ..numbers.digits import format_number
-from ..output.figure import BLUE, GREEN, PURPLE, RED, drawing
+from ..output.figure import BLUE, GREEN, PURPLE, RED, saved
 from ..output.forms import Picture
 from ..output.page import Page
 from .measure import EXACT_DIGITS, MOST_ROWS, SEED, SETTINGS, Measured
@@ -57,7 +57,7 @@ def save(measured: Sequence[Measured], picture: Picture) -> None:
     """Draw errors against times to a file, for each family. Raises OSError."""
     families = {family: [*group] for family, group in groupby(measured, attrgetter("family"))}
     title = "Worst error of a scene, in units in the last place of a double (ulp), against its time"
-    with drawing(picture, [title]) as figure:
+    with saved(picture, [title]) as figure:
         panels = figure.subplots(1, len(families), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (family, settings) in zip(panels, families.items(), strict=True):
             axes.set(title=family, xscale="log", yscale="log", xmargin=0.2)
