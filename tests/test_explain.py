@@ -172,14 +172,14 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     known |= {"f_axle": decided.axle_friction}
     for x, terms in scene.terms:
         known[f"{terms.symbol}{x[1:] if x in MASSES else ''}"] = scene.number_of(x) * (
-            decided.sign if x == "a" else 1
+            decided.heavier_side if x == "a" else 1
         )
     env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}
     env |= {"π": +mp.pi, "φ": wrap if scene.wrap.unit == "rad" else mp.radians(wrap), "|a|": abs(env["a"])}
     if scene.mu == 0 or scene.mu_k == 0:
         k, z = ("k", "z") if scene.mu == 0 else ("k_kin", "z_kin")
         env |= {k: mp.mpf(1), z: mp.mpf(0), "M*": mp.mpf(0)}
-    lighter, heavier = ("T2", "T1") if decided.sign < 0 else ("T1", "T2")
+    lighter, heavier = ("T2", "T1") if decided.heavier_side < 0 else ("T1", "T2")
     found = told_of(kind, 50)
     for equation in equations(found):
         left = symbol_of(equation)

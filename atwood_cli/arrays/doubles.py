@@ -151,7 +151,7 @@ class Bounded:
         if left.exact and right.exact:
             return Bounded(ar, parts, ar.error_of_doubles, positive=positive)
         certain = not isinstance(left.row_error, Formula) and not isinstance(right.row_error, Formula)
-        if positive and (ar.roughly or certain):
+        if positive and (ar.sums_take_larger_error or certain):
             fixed_error = max(left.fixed_error, right.fixed_error) + ar.error_of_sum
             return Bounded(ar, parts, fixed_error, larger(left.row_error, right.row_error))
         error = ar.error(left) + ar.error(right)
@@ -203,7 +203,7 @@ class Doubles:
     """The relative errors of operations, and of a constant that is no double."""
     error_of_doubles = UNIT
     """The relative error of a sum of two doubles, whatever cancels, and of a product of two doubles."""
-    roughly = True
+    sums_take_larger_error = True
     """Whether the row error of a sum is the larger one of its terms: a weaker bound that takes less time."""
 
     def error(self, x: Bounded) -> Any:
@@ -244,9 +244,8 @@ class Doubles:
     def is_zero(self, x: Bounded) -> bool:
         return x.parts == (0.0,)
 
-    def known_not_negative(self, x: Bounded) -> Bounded:
-        x.positive = True
-        return x
+    def taken_as_not_negative(self, x: Bounded) -> Bounded:
+        return Bounded(self, x.parts, x.fixed_error, x.row_error)
 
     def sqrt(self, x: Bounded) -> Bounded:
         """Return √x for x >= 0."""

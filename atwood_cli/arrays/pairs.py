@@ -123,7 +123,7 @@ class Pairs(Doubles):
     error_of_constant, error_of_sum, error_of_product = UNIT_SQUARED, 4 * UNIT_SQUARED, 8 * UNIT_SQUARED
     error_of_quotient, error_of_root, error_of_doubles = 13 * UNIT_SQUARED, 8 * UNIT_SQUARED, 0.0
     error_of_series = 256 * UNIT_SQUARED
-    roughly = False
+    sums_take_larger_error = False
 
     def error(self, x: Bounded) -> Any:
         return x.size * (x.bound + self.error_of_sum)
@@ -211,9 +211,7 @@ class Pairs(Doubles):
         y = Bounded(self, (Formula("log1p", formula(x.parts[0])),))
         guess = self.expm1(y)
         off = (x - guess) / (guess + 1)
-        result = y + off - off * off / 2
-        result.positive = True
-        return result
+        return self.taken_as_not_negative(y + off - off * off / 2)
 
     def cos_sin_of_column(self, degrees: Formula) -> tuple[Bounded, Bounded]:
         """Return the cosine and the sine of angles in degrees; each angle that occurs is computed once."""

@@ -61,13 +61,13 @@ COLUMN = "column"
 
 
 class Pattern(NamedTuple):
-    """What rows have in common before any question: which mass is heavier (`Decisions.sign`), and each input.
+    """What rows have in common before any question: their `Decisions.heavier_side`, and each input.
 
     An input is None (not given), inf, a Fraction that is the same in all rows, or COLUMN. ``terms`` are those
     of columns that are not in the terms of their input.
     """
 
-    sign: int
+    heavier_side: int
     inputs: tuple[Fraction | float | str | None, ...]
     terms: tuple[tuple[str, Terms], ...] = ()
 
@@ -81,7 +81,24 @@ class Pattern(NamedTuple):
         return Scene(**in_own_terms(fields, dict(self.terms)))
 
 
-Branches = frozenset[tuple[str, bool]]
+class Question(NamedTuple):
+    """A question about each row: the method of `Decisions` that answers it, and its argument."""
+
+    method: str
+    at: str = ""
+
+    @property
+    def name(self) -> str:
+        """The name of a program's result that answers it."""
+        return f"{self.method} {self.at}"
+
+    @property
+    def usual_answer(self) -> bool:
+        """The answer of most rows: masses move, and nothing else is so."""
+        return self.method == "moves_axle"
+
+
+Branches = frozenset[tuple[Question, bool]]
 """Questions, each with the answer of a group's rows."""
 
 
@@ -107,9 +124,10 @@ class _GroupDecisions(Decisions):
 
     def __init__(self, task: Task, number: Callable[[str], Any]) -> None:
         super().__init__(task.pattern.scene(number))
-        self.sign, self._branches = task.pattern.sign, dict(task.branches)
+        self.heavier_side, self._branches = task.pattern.heavier_side, dict(task.branches)
 
-    def _branch(self, question: str) -> bool:
+    def _branch(self, method: str, at: str = "") -> bool:
+        question = Question(method, at)
         if question not in self._branches:
             raise Undecided(question)
         return self._branches[question]
@@ -125,13 +143,13 @@ class _GroupDecisions(Decisions):
         return self._branch("ends_hang_down") if is_column else super().ends_hang_down
 
     def slips_at(self, at: LimitingCase) -> bool:
-        return self._branch(f"slips_at {at}")
+        return self._branch("slips_at", at)
 
     def slides_at(self, at: LimitingCase) -> bool:
-        return self.slips_at(at) if self.limit_is_static else self._branch(f"slides_at {at}")
+        return self.slips_at(at) if self.limit_is_static else self._branch("slides_at", at)
 
     def moves_axle(self, name: Literal["difference", "heavy"]) -> bool:
-        return self._branch(f"moves_axle {name}")
+        return self._branch("moves_axle", name)
 
 
 def _machine_of_columns(task: Task, ar: Doubles) -> Machine[Any]:
@@ -148,14 +166,14 @@ class Step(NamedTuple):
     """The reasons of quantities without a value."""
     row_by_row: tuple[str, ...]
     """Quantities that no program gives: rows are solved one by one."""
-    question: str
-    """A question, or "". The program gives each row's answer, and says by `condition_of` if it is sure."""
-    others: dict[bool, Task]
-    """The tasks of rows by their answer. Rows with no answer of these go on to the plan's next step."""
+    question: Question | None
+    """A question. The program gives each row's answer, and says by `condition_of` if it is sure."""
+    others: list[tuple[bool, Task]]
+    """Answers, and the tasks of rows with these. Rows with another answer go on to the plan's next step."""
 
 
 def condition_of(name: str) -> str:
-    """Return the name of a program's result that says whether a quantity is certified."""
+    """Return the name of a program's result that says whether a quantity is certified, or an answer sure."""
     return f"{name} is certified"
 
 
@@ -166,12 +184,14 @@ def plan(task: Task, accuracy: Accuracy, adjoin: bool) -> tuple[Program, list[St
     Where rows adjoin each other, a next step is about those with the usual answer: in doubles it takes less
     time to compute it in all rows than to gather the columns of these.
     """
-    steps, formulas, tasks = [], dict[str, Term](), [task]
+    steps, formulas, tasks = list[Step](), dict[str, Term](), [task]
     for step_task in tasks:
         step = _step(step_task, accuracy, formulas)
-        steps.append(step)
         if step.question and adjoin and LEVELS[accuracy][task.level] is DOUBLES:
-            tasks.append(step.others.pop(step.question.startswith("moves_axle")))
+            usual = step.question.usual_answer
+            tasks += [others for answer, others in step.others if answer == usual]
+            step = step._replace(others=[other for other in step.others if other[0] != usual])
+        steps.append(step)
     return Program(formulas), steps
 
 
@@ -179,7 +199,8 @@ def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
     """Return a step, made by running the model on columns quantity by quantity, and add its formulas."""
     machine = _machine_of_columns(task, LEVELS[accuracy][task.level])
     missing: dict[str, str] = {}
-    uncertain, row_by_row, asking, question = [], [], [], ""
+    uncertain, row_by_row, asking = [], [], []
+    question: Question | None = None
     for name in task.names:
         try:
             if name == "regime":
@@ -187,7 +208,7 @@ def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
                 continue
             formulas[name], condition = proven_double(getattr(machine, name), accuracy)
         except Undecided as undecided:
-            question = question or str(undecided)
+            question = question or undecided.args[0]
             asking.append(name)
         except Undetermined as undetermined:
             formulas[name], missing[name] = nan, str(undetermined)
@@ -197,36 +218,38 @@ def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
             if condition is not None:
                 formulas[condition_of(name)] = condition
                 uncertain.append(name)
-    others = {}
+    others = []
     if question:
         formulas |= _answer(task, question, DOUBLES)
         for answer in (False, True):
-            others[answer] = task._replace(branches=task.branches | {(question, answer)}, names=(*asking,))
+            branches = task.branches | {(question, answer)}
+            others.append((answer, task._replace(branches=branches, names=(*asking,))))
     return Step(task, (*uncertain,), missing, (*row_by_row,), question, others)
 
 
 @lru_cache(KEPT_PLANS)
-def answering(task: Task, question: str) -> Program:
+def answering(task: Task, question: Question) -> Program:
     """Return the program that answers a question in pairs, and says by `condition_of` whether it is sure."""
     return Program(_answer(task, question, PAIRS))
 
 
-def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
+def _answer(task: Task, question: Question, ar: Doubles) -> dict[str, Term]:
     wrap = Formula("symbol", "wrap")
-    if question == "long_wrap":
-        return {condition_of(question): less(0.0, wrap), question: less(180.0, wrap)}
-    if question == "ends_hang_down":
+    if question.method == "long_wrap":
+        return {condition_of(question.name): less(0.0, wrap), question.name: less(180.0, wrap)}
+    if question.method == "ends_hang_down":
         is_half_turn = equal(Formula("fmod", wrap, formula(360.0)), 180.0)
-        return {condition_of(question): less(0.0, wrap), question: is_half_turn}
-    machine, (method, point) = _machine_of_columns(task, ar), question.split()
+        return {condition_of(question.name): less(0.0, wrap), question.name: is_half_turn}
+    machine = _machine_of_columns(task, ar)
     decided = machine.decided
-    if method == "moves_axle":
-        margin: Any = getattr(decided, point) * machine.g - machine.f
+    if question.method == "moves_axle":
+        margin: Any = getattr(decided, question.at) * machine.g - machine.f
     else:
-        mu = decided.scene.mu if method == "slips_at" else decided.limiting_mu
-        margin = ar.log1p(decided.ratio_minus_1(cast(LimitingCase, point), ar)) - ar.number(mu) * machine.phi
+        mu = decided.scene.mu if question.method == "slips_at" else decided.limiting_mu
+        ratio_minus_1 = decided.ratio_minus_1(cast(LimitingCase, question.at), ar)
+        margin = ar.log1p(ratio_minus_1) - ar.number(mu) * machine.phi
     sure = less(margin.row_error, 0.25 - margin.fixed_error)
-    return {condition_of(question): sure, question: less(0.0, margin.parts[0])}
+    return {condition_of(question.name): sure, question.name: less(0.0, margin.parts[0])}
 
 
 def nearest_double(task: Task, name: str, number: Callable[[str], Any]) -> float | None:

@@ -57,7 +57,7 @@ def kind_of(decided: Decisions) -> Profile:
             0,
             "leaves no arc of contact, as that end is fixed to the pulley; give both masses above 0",
         )
-    if decided.regime == "no-slip" and not (decided.pulley_known or decided.sign == 0):
+    if decided.regime == "no-slip" and not (decided.pulley_known or decided.heavier_side == 0):
         raise SceneError("M", None, "is missing: the forces depend on the pulley's mass; give M")
     spare = decided.regime == "no-slip" and decided.scene.mu is not None and not decided.tensions_equal
     return "creep" if spare else "exponential"
@@ -78,7 +78,7 @@ def contact(answers: Answers, points: int | str = USUAL_POINTS) -> Contact:
 
 def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
     """Return the columns at the fraction q of the arc, counted from m1's end."""
-    scene, sign = answers.decided.scene, answers.decided.sign
+    scene, sign = answers.decided.scene, answers.decided.heavier_side
     from_light = q if sign >= 0 else 1 - q
 
     def beyond_the_stuck_piece(machine: Machine[Any]) -> Any:
@@ -140,7 +140,7 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
 
     torque = {
         "contact": answers.settle(
-            lambda m: arc.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.decided.sign
+            lambda m: arc.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.decided.heavier_side
         ),
         "ends": answers.settle(lambda m: m.tension_difference * _radius(m)),
     }

@@ -213,7 +213,7 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
     decided, scene, answers = derivation.decided, derivation.scene, derivation.answers
     motion = decided.motion
     by = motion.fall if motion.finds and motion.a is None else ()
-    at_rest = decided.sign == 0 or decided.pulley_at_rest
+    at_rest = decided.heavier_side == 0 or decided.pulley_at_rest
     grips, moves = decided.regime == "no-slip", answers["acceleration"] is not None
     is_disk = scene.I is None and scene.inertia == Fraction(1, 2)
     critical_pulley, heavier, lighter = (
@@ -222,8 +222,8 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
     by_heavier = heavier and not decided.slips_at_rest
     by_lighter = lighter and not (decided.pulley_is_ideal or decided.pulley_at_rest_until_it_slips)
     return {
-        "equal masses": decided.sign == 0,
-        "m1 is heavier": decided.sign < 0,
+        "equal masses": decided.heavier_side == 0,
+        "m1 is heavier": decided.heavier_side < 0,
         "half a turn": scene.wrap.is_half_turn,
         **{f"a by {x} and {y}": by == (x, y) for x, y in combinations(FALL, 2)},
         "falls": bool(motion.fall),

@@ -86,7 +86,7 @@ class Derivation:
         self.answers, self.decided, self.scene = answers, answers.decided, answers.decided.scene
         self.digits = answers.digits or SHOWN_DIGITS
         self.shown: set[str] = set()
-        self.light, self.heavy = ("2", "1") if self.decided.sign < 0 else ("1", "2")
+        self.light, self.heavy = ("2", "1") if self.decided.heavier_side < 0 else ("1", "2")
         self.symbols = self._symbols()
         self.inputs = {name: Symbol(name, x) for name, x in self._values().items() if x is not None}
         motion = self.decided.motion
@@ -100,7 +100,7 @@ class Derivation:
         """Return what is given or found, by symbol."""
         decided, scene, motion = self.decided, self.scene, self.decided.motion
         terms = {
-            f"{kind.symbol}{x[1:] if x in MASSES else ''}": scene.number_of(x) * decided.sign
+            f"{kind.symbol}{x[1:] if x in MASSES else ''}": scene.number_of(x) * decided.heavier_side
             if x == "a"
             else abs(scene.number_of(x))
             for x, kind in scene.terms
@@ -128,7 +128,7 @@ class Derivation:
             "limiting_friction_mass": f"z{kin}",
             "limiting_drive": f"d{kin}",
             "phi": "π" if scene.wrap.is_half_turn else "φ",
-            "magnitude": "a" if decided.sign >= 0 else "a_1" if decided.slows_down else "|a|",
+            "magnitude": "a" if decided.heavier_side >= 0 else "a_1" if decided.slows_down else "|a|",
             "light_tension": f"T{self.light}",
             "heavy_tension": f"T{self.heavy}",
             "difference": f"T{self.heavy} - T{self.light}",

@@ -62,7 +62,7 @@ def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
 WITHIN = {1: "one standard uncertainty", 2: "two standard uncertainties"}
 """A decision is in doubt if it differs within so many standard uncertainties of an input."""
 DOUBTFUL = {
-    "Which mass is heavier": "sign",
+    "Which mass is heavier": "heavier_side",
     "Whether the axle holds the difference": "axle_holds",
     "Whether the string slips": "regime",
 }
@@ -168,7 +168,7 @@ def verdict(answers: Answers) -> str:
     """Say what the string does, and why."""
     answers = answers.to_six_digits
     decided, scene = answers.decided, answers.decided.scene
-    if decided.sign == 0:
+    if decided.heavier_side == 0:
         return "At rest: the masses are equal, so no friction is needed."
     if decided.regime == "verge":
         return _on_the_verge(answers)

@@ -116,7 +116,7 @@ class Symbols:
     def is_zero(self, x: Formula) -> bool:
         return is_number(x, 0) or bool(x.op == "symbol" and x.parts[0].of == 0)
 
-    def known_not_negative(self, x: Formula) -> Formula:
+    def taken_as_not_negative(self, x: Formula) -> Formula:
         return x
 
     def cos_sin(self, x: Formula) -> tuple[Formula, Formula]:

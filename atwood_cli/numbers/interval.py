@@ -109,7 +109,7 @@ class Enclosures:
     def is_zero(self, x: Enclosure) -> bool:
         return x.lo == x.hi == 0
 
-    def known_not_negative(self, x: Enclosure) -> Enclosure:
+    def taken_as_not_negative(self, x: Enclosure) -> Enclosure:
         return x
 
     def _fixed(self, value: int, error: int, bits: int) -> Enclosure:

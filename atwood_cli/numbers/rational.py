@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 
         def number(self, q: Fraction | int) -> N: ...
         def is_zero(self, x: N) -> bool: ...
-        def known_not_negative(self, x: N) -> N:
-            """Return x, which is known not to be negative; that saves work in columns."""
+        def taken_as_not_negative(self, x: N) -> N:
+            """Return x, of which the equations say that it is not negative; that saves work in columns."""
             ...
 
         @property
@@ -73,7 +73,7 @@ class Rationals:
     def is_zero(self, x: Fraction) -> bool:
         return x == 0
 
-    def known_not_negative(self, x: Fraction) -> Fraction:
+    def taken_as_not_negative(self, x: Fraction) -> Fraction:
         return x
 
     def sqrt(self, x: Fraction) -> Fraction:
@@ -89,9 +89,11 @@ class Rationals:
         cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[x // 90 % 4]
         return Fraction(cos), Fraction(sin)
 
-    def __getattr__(self, name: str) -> Any:
-        """Raise Irrational for every other function and for π."""
+    def _irrational(self, *_: Any) -> Any:
         raise Irrational
+
+    expm1 = log1p = cos_sin = root = _irrational
+    pi = property(_irrational)
 
 
 EXACT: Arithmetic[Fraction] = cast(Any, Rationals())

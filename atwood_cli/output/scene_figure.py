@@ -133,7 +133,8 @@ def _draw_pulley(axes: "Axes", answers: Answers, phi: float) -> None:
         elif answers.decided.ends_hang_down:
             axes.plot([end.real] * 2, [0, -STRING], color=FAINT, lw=2.4, solid_capstyle="butt")
     axes.text(0, 0.26, _pulley(answers), ha="center", va="center", size=8)
-    above = 1j * np.exp(-1j * answers.decided.sign * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
+    side = answers.decided.heavier_side
+    above = 1j * np.exp(-1j * side * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
     if answers["rim_acceleration"]:
         _draw_arc(axes, ROTATION_AT * (above[::-1] if answers.decided.slows_down else above), PURPLE, "white")
     if friction := _axle_friction(answers):
@@ -163,7 +164,7 @@ def _pulley(answers: Answers) -> str:
 def _axle_friction(answers: Answers) -> str:
     """Return the axle's friction as a force at the rim (N), as much of it as acts; empty if none does."""
     decided = answers.decided
-    if not decided.has_axle_friction or decided.locked or not decided.sign:
+    if not decided.has_axle_friction or decided.locked or not decided.heavier_side:
         return ""
     held = decided.rim_at_rest if decided.regime == "slip" else decided.axle_holds
     return _number(answers.settle(lambda m: m.difference if held else m.f), answers)
@@ -188,7 +189,7 @@ def _arrows_on_arc(answers: Answers, kind: arc.Profile, phi: float) -> Arrows:
     count = int(drawn * phi / BETWEEN_ARROWS + 1e-9)
     both = phi < TURN  # both ends of a turn are one place
     shares = np.linspace(0, drawn, count + both, endpoint=both) if count else np.array([drawn / 2])
-    if answers.decided.sign >= 0:
+    if answers.decided.heavier_side >= 0:
         shares = 1 - shares
     return Arrows(phi * shares, *_forces(answers, kind, shares))
 
@@ -276,7 +277,7 @@ def _draw_curves(axes: "Axes", answers: Answers, kind: arc.Profile, wrap: float)
         if kind == "creep"
         else 0.0
     )
-    edge, start = (stuck, 0) if answers.decided.sign >= 0 else (1 - stuck, 1)
+    edge, start = (stuck, 0) if answers.decided.heavier_side >= 0 else (1 - stuck, 1)
     shares = np.sort([*np.linspace(0, 1, CURVE_POINTS), *np.nextafter(edge, [0, edge, 1])])
     tension, friction = _forces(answers, kind, shares)
     axes.axhline(0, color=FAINT, lw=0.8)

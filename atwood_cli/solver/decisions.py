@@ -65,7 +65,7 @@ class Decisions:
         self._ratios: dict[tuple[LimitingCase, Arithmetic[Any]], Any] = {}
 
     @lazy
-    def sign(self) -> int:
+    def heavier_side(self) -> int:
         """1 if m2 is the heavier mass, -1 if m1 is, else 0. Equal masses that slow down have one, too."""
         if self.motion.finds == "axle":
             return self.motion.direction
@@ -74,12 +74,12 @@ class Decisions:
     @lazy
     def light(self) -> Fraction:
         """The lighter mass (kg)."""
-        return self.scene.m1 if self.sign >= 0 else self.scene.m2
+        return self.scene.m1 if self.heavier_side >= 0 else self.scene.m2
 
     @lazy
     def heavy(self) -> Fraction:
         """The heavier mass (kg)."""
-        return self.scene.m2 if self.sign >= 0 else self.scene.m1
+        return self.scene.m2 if self.heavier_side >= 0 else self.scene.m1
 
     @property
     def one_mass_is_0(self) -> bool:
@@ -136,7 +136,7 @@ class Decisions:
         """Whether the axle's friction holds unequal masses at rest, h - l <= b; not masses that slow down."""
         if self.motion.finds == "axle":
             return False
-        return self.has_axle_friction and self.sign != 0 and not self.moves_axle("difference")
+        return self.has_axle_friction and self.heavier_side != 0 and not self.moves_axle("difference")
 
     @property
     def difference(self) -> Fraction:
@@ -166,7 +166,7 @@ class Decisions:
     @property
     def tensions_equal(self) -> bool:
         """Whether a string that grips needs no friction."""
-        return self.sign == 0 or self.pulley_is_ideal
+        return self.heavier_side == 0 or self.pulley_is_ideal
 
     @lazy
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
@@ -196,10 +196,10 @@ class Decisions:
     @property
     def assumptions(self) -> dict[str, str]:
         """The quantities that depend on what is only assumed, and the assumption."""
-        is_massless = self.scene.mu is None and self.pulley_mass == 0 and self.scene.M is None
-        is_massless = is_massless and self.sign != 0 and self.tensions_equal and not self.one_mass_is_0
+        is_massless = self.scene.mu is None is self.scene.M and self.pulley_mass == 0
+        moves = self.heavier_side != 0 and self.tensions_equal and not self.one_mass_is_0
         regime = {"regime": REGIME_ASSUMED} if self.mu_assumed else {}
-        return regime | ({"mu_verge": MASSLESS_ASSUMED} if is_massless else {})
+        return regime | ({"mu_verge": MASSLESS_ASSUMED} if is_massless and moves else {})
 
     @property
     def mu_assumed(self) -> bool:
@@ -226,7 +226,7 @@ class Decisions:
     @lazy
     def measured_acceleration(self) -> Fraction:
         """The measured acceleration (m/s²), positive when the heavier mass descends."""
-        return self.motion.acceleration(self.sign)
+        return self.motion.acceleration(self.heavier_side)
 
     @lazy
     def fall(self) -> tuple[Fraction | None, ...]:

@@ -105,7 +105,7 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         case "axle" if M == inf:
             return "says nothing about the axle of a locked pulley; leave M out"
-        case "axle" if decided.sign == 0:
+        case "axle" if decided.heavier_side == 0:
             return "says nothing about the axle: equal masses that begin at rest stay there on any"
         case "mu_k" if M != inf and (mu is None or M is I is None):
             return "finds mu_k only if the string slips: give M = inf, or M and mu"
@@ -117,7 +117,7 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
                 f"leaves nothing to find if both {pulley} and g are given; leave one of them out,"
                 " or ask for the axle's friction: --find axle"
             )
-        case "M" | "g" | "mu_k" if decided.sign == 0:
+        case "M" | "g" | "mu_k" if decided.heavier_side == 0:
             return f"says nothing about equal masses, which rest on any pulley; {IF_IT_SLOWS_DOWN}"
         case "mu_k" if not decided.light:
             return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
@@ -136,8 +136,8 @@ def _impossible(scene: Scene) -> str:
     if finds == "mu_k":
         if decided.slide_ratio_minus_1(EXACT) < 0:
             drive, load = (of(decided.light, decided.heavy, ZERO) for of in (physics.drive, physics.load))
-            apart = rounding_apart_from(decided.sign * decided.measured_acceleration, SHOWN_DIGITS)
-            most = apart(decided.sign * physics.acceleration(drive, load, scene.g))
+            apart = rounding_apart_from(decided.heavier_side * decided.measured_acceleration, SHOWN_DIGITS)
+            most = apart(decided.heavier_side * physics.acceleration(drive, load, scene.g))
             return f"is too large: without friction the acceleration is {format_number(most)} m/s²; {MOTOR}"
         if scene.mu is not None and decided.exceeds(decided.slide_ratio_minus_1, scene.mu):
             return "needs more kinetic friction than mu; check both"
@@ -161,7 +161,7 @@ def found_inputs(scene: Scene) -> dict[str, Any]:
         return {}
     decided: Any = Decisions(scene)  # about the pulley, as a mass may be missing
     c, f, b = decided.rim_mass, decided.axle_friction, decided.axle_mass
-    a = scene.motion.acceleration({"m2": 1, "m1": -1}.get(finds) or decided.sign)
+    a = scene.motion.acceleration({"m2": 1, "m1": -1}.get(finds) or decided.heavier_side)
     if finds != "g" and (a >= g or (finds == "axle" and -a >= g)):
         fall = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(abs(a))))
         gives = f"gives {fall} m/s², and " if scene.motion.a is None else ""

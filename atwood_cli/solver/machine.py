@@ -89,7 +89,7 @@ class Machine(Generic[N]):
     @lazy
     def ratio_minus_1(self) -> N:
         """T_h/T_l - 1 of a string that grips, (33)."""
-        return self.ar.known_not_negative(self.decided.ratio_minus_1("as_given", self.ar))
+        return self.ar.taken_as_not_negative(self.decided.ratio_minus_1("as_given", self.ar))
 
     @lazy
     def log_ratio(self) -> N:
@@ -104,7 +104,7 @@ class Machine(Generic[N]):
     @lazy
     def drive(self) -> N:
         """Drive at the limit of static friction (kg)."""
-        return self.ar.known_not_negative(physics.drive(self.l, self.h, self.friction_mass))
+        return self.ar.taken_as_not_negative(physics.drive(self.l, self.h, self.friction_mass))
 
     @lazy
     def limiting_k_minus_1(self) -> N:
@@ -122,7 +122,7 @@ class Machine(Generic[N]):
     @lazy
     def limiting_drive(self) -> N:
         """Drive on the verge and in slip (kg)."""
-        return self.ar.known_not_negative(physics.drive(self.l, self.h, self.limiting_friction_mass))
+        return self.ar.taken_as_not_negative(physics.drive(self.l, self.h, self.limiting_friction_mass))
 
     @lazy
     def magnitude(self) -> N:
@@ -130,11 +130,11 @@ class Machine(Generic[N]):
         l, h, decided = self.l, self.h, self.decided
         if decided.regime != "no-slip":
             drive, load = self.limiting_drive, physics.load(l, h, self.limiting_friction_mass)
-        elif decided.sign == 0 or decided.pulley_at_rest:
+        elif decided.heavier_side == 0 or decided.pulley_at_rest:
             return self.ar.number(0)
         else:
             drive = physics.drive(l, h, self.b)
-            drive = drive if decided.slows_down else self.ar.known_not_negative(drive)
+            drive = drive if decided.slows_down else self.ar.taken_as_not_negative(drive)
             load = physics.load(l, h, self._given(decided.rim_mass, quantities.NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
@@ -156,7 +156,7 @@ class Machine(Generic[N]):
 
     def seen_from_m1(self, vector: tuple[N, N]) -> tuple[N, N]:
         """Return a vector that is given from the lighter mass's end of the arc as seen from m1's end."""
-        return vector if self.decided.sign >= 0 else physics.mirrored(*vector, *self._direction)
+        return vector if self.decided.heavier_side >= 0 else physics.mirrored(*vector, *self._direction)
 
     @lazy
     def limiting_arc(self) -> N:
@@ -213,14 +213,14 @@ class Machine(Generic[N]):
             return self.ar.number(0)
         if decided.pulley_at_rest:
             difference = physics.difference_of_moving_masses(self.l, self.h, self.ar.number(0), self.g)
-            return self.ar.known_not_negative(difference)
+            return self.ar.taken_as_not_negative(difference)
         c = self._given(decided.rim_mass, quantities.NEEDS_M)
         return physics.difference_of_a_pulley(c, self.magnitude, self.f)
 
     @property
     def tension_difference(self) -> N:
         """T2 - T1 (N)."""
-        return self.difference * self.decided.sign
+        return self.difference * self.decided.heavier_side
 
     def _tensions_differ(self) -> bool:
         """Decide whether a string that grips has unequal tensions. Raises Undetermined if they are not known.
@@ -250,7 +250,7 @@ class Machine(Generic[N]):
 
     @property
     def acceleration(self) -> N:
-        return self.magnitude if self.decided.sign > 0 else self.magnitude * self.decided.sign
+        return self.magnitude if self.decided.heavier_side > 0 else self.magnitude * self.decided.heavier_side
 
     @lazy
     def light_tension(self) -> N:
@@ -264,11 +264,11 @@ class Machine(Generic[N]):
 
     @property
     def tension_1(self) -> N:
-        return self.light_tension if self.decided.sign >= 0 else self.heavy_tension
+        return self.light_tension if self.decided.heavier_side >= 0 else self.heavy_tension
 
     @property
     def tension_2(self) -> N:
-        return self.heavy_tension if self.decided.sign >= 0 else self.light_tension
+        return self.heavy_tension if self.decided.heavier_side >= 0 else self.light_tension
 
     @lazy
     def mu_verge(self) -> N:
@@ -340,7 +340,7 @@ class Machine(Generic[N]):
         if self.decided.rim_at_rest:
             return self.ar.number(0)
         c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
-        return physics.rim_acceleration(self.difference, c, self.f) * self.decided.sign
+        return physics.rim_acceleration(self.difference, c, self.f) * self.decided.heavier_side
 
     @lazy
     def angular_acceleration(self) -> N:
@@ -459,7 +459,7 @@ class Machine(Generic[N]):
         if drop is not None:
             return drop
         if speed is not None:
-            return physics.by_speed_and_height(speed, a)
+            return physics.height_or_acceleration(speed, a)
         assert time is not None
         return physics.height_in_time(a, time)
 
@@ -471,7 +471,7 @@ class Machine(Generic[N]):
         if drop is not None:
             return physics.fall_time(drop, a, self.ar.sqrt)
         assert speed is not None
-        return physics.by_speed_and_time(speed, a)
+        return physics.time_or_acceleration(speed, a)
 
     @property
     def final_speed(self) -> N:

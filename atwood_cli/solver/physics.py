@@ -158,13 +158,13 @@ def acceleration_of_fall(drop: N, time: N) -> N:
     return 2 * drop / (time * time)
 
 
-def by_speed_and_height(speed: N, other: N) -> N:
-    """Return the acceleration (m/s²) of a fall from rest to ``speed`` (m/s), or its height (m), by the other.
+def height_or_acceleration(speed: N, acceleration_or_height: N) -> N:
+    """Return the height (m) of a fall from rest to ``speed`` (m/s), or its acceleration (m/s²), by the other.
 
-    >>> by_speed_and_height(6, 9), by_speed_and_height(6, 2)
+    >>> height_or_acceleration(6, 9), height_or_acceleration(6, 2)
     (2.0, 9.0)
     """
-    return speed * speed / (2 * other)
+    return speed * speed / (2 * acceleration_or_height)
 
 
 def height_in_time(a: N, time: N) -> N:
@@ -176,13 +176,13 @@ def height_in_time(a: N, time: N) -> N:
     return a * time * time / 2
 
 
-def by_speed_and_time(speed: N, other: N) -> N:
-    """Return the acceleration (m/s²) of a fall from rest to ``speed`` (m/s), or its time (s), by the other.
+def time_or_acceleration(speed: N, acceleration_or_time: N) -> N:
+    """Return the time (s) of a fall from rest to ``speed`` (m/s), or its acceleration (m/s²), by the other.
 
-    >>> by_speed_and_time(6, 3), by_speed_and_time(6, 2)
+    >>> time_or_acceleration(6, 3), time_or_acceleration(6, 2)
     (2.0, 3.0)
     """
-    return speed / other
+    return speed / acceleration_or_time
 
 
 def speed_after(a: N, time: N) -> N:

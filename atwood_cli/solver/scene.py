@@ -287,9 +287,9 @@ class Motion(NamedTuple):
             return sign * self.a
         drop, time, speed = (cast(Fraction, getattr(self, name)) for name in FALL)
         if drop is None:
-            a = physics.by_speed_and_time(speed, time)
+            a = physics.time_or_acceleration(speed, time)
         elif time is None:
-            a = physics.by_speed_and_height(speed, drop)
+            a = physics.height_or_acceleration(speed, drop)
         else:
             a = physics.acceleration_of_fall(drop, time)
         return sign * self.direction * a if self.finds in MASSES else a

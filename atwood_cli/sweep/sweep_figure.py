@@ -67,7 +67,7 @@ def _solve(along: Range, scene: Scene, digits: int | None) -> tuple[list[Change]
     if along.is_list:
         scenes = (along.at(point.value, scene) for point in along.points)
         return [], {float(place): Answers(at_value) for place, at_value in enumerate(scenes)}
-    corners = attrgetter("regime", "sign", "axle_holds")  # where one of these changes
+    corners = attrgetter("regime", "heavier_side", "axle_holds")  # where one of these changes
     in_order = list(changes(scene, along, digits, what=corners))
     values = [*steps(*along.ends, CURVE_STEPS, along.log)]
     values += [x for change in in_order for x in (change.holds_at, change.differs_at)]
