@@ -168,7 +168,7 @@ class Step(NamedTuple):
     """Quantities that no program gives: rows are solved one by one."""
     question: Question | None
     """A question. The program gives each row's answer, and says by `condition_of` if it is sure."""
-    others: list[tuple[bool, Task]]
+    tasks_by_answer: list[tuple[bool, Task]]
     """Answers, and the tasks of rows with these. Rows with another answer go on to the plan's next step."""
 
 
@@ -189,8 +189,10 @@ def plan(task: Task, accuracy: Accuracy, adjoin: bool) -> tuple[Program, list[St
         step = _step(step_task, accuracy, formulas)
         if step.question and adjoin and LEVELS[accuracy][task.level] is DOUBLES:
             usual = step.question.usual_answer
-            tasks += [others for answer, others in step.others if answer == usual]
-            step = step._replace(others=[other for other in step.others if other[0] != usual])
+            tasks += [others for answer, others in step.tasks_by_answer if answer == usual]
+            step = step._replace(
+                tasks_by_answer=[other for other in step.tasks_by_answer if other[0] != usual]
+            )
         steps.append(step)
     return Program(formulas), steps
 
@@ -218,13 +220,13 @@ def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
             if condition is not None:
                 formulas[condition_of(name)] = condition
                 uncertain.append(name)
-    others = []
+    tasks_by_answer = []
     if question:
         formulas |= _answer(task, question, DOUBLES)
         for answer in (False, True):
             branches = task.branches | {(question, answer)}
-            others.append((answer, task._replace(branches=branches, names=(*asking,))))
-    return Step(task, (*uncertain,), missing, (*row_by_row,), question, others)
+            tasks_by_answer.append((answer, task._replace(branches=branches, names=(*asking,))))
+    return Step(task, (*uncertain,), missing, (*row_by_row,), question, tasks_by_answer)
 
 
 @lru_cache(KEPT_PLANS)

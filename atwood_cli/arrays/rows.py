@@ -73,7 +73,7 @@ class Rows:
                 answers = flags[question.name]
                 unsure = np.flatnonzero(remain & ~flags[condition_of(question.name)])
                 answers[unsure] = self._ask(select(rows, unsure), step.task, question)
-                for answer, other_task in step.others:
+                for answer, other_task in step.tasks_by_answer:
                     places = np.flatnonzero(remain & (answers == answer))
                     yield rows if places.size == answers.size else select(rows, places), other_task
                     remain &= answers != answer

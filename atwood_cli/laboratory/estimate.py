@@ -129,7 +129,7 @@ def slopes(residual: Residual, data: Data, values: Mapping[str, float], names: S
 def line_of(residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]) -> Line:
     """Return the linear fit of changes of the ``names``, at these values. Raises CannotSeparate.
 
-    The unknown variance has the shape of a force that differs between runs, or of the scatter of single
+    The unknown variance scales as that of a force that differs between runs, or as the scatter of single
     values if nothing shows that.
     """
     by_measured = slope(residual, data, values, "measured")
@@ -137,11 +137,11 @@ def line_of(residual: Residual, data: Data, values: Mapping[str, float], names: 
     known = known + float(np.square(ROUNDING * by_measured * data.measured).max())  # no weight has no bound
     for name, u in data.uncertain.items():
         known = known + (slope(residual, data, values, name) * u) ** 2
-    shape = by_measured**2 / data.counts
+    scale = by_measured**2 / data.counts
     if data.scatter.any():
-        shape = slope(residual, data, values, "axle") ** 2
+        scale = slope(residual, data, values, "axle") ** 2
     J = slopes(residual, data, values, names)
-    return fit_line(J, residual(data, values), known, shape, data.known_dof)
+    return fit_line(J, residual(data, values), known, scale, data.known_dof)
 
 
 def separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> bool:

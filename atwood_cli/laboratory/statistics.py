@@ -36,8 +36,8 @@ class CannotSeparate(ArithmeticError):
 class Line(NamedTuple):
     """Weighted least squares of n values y: the ``coefficients`` b (p) for which J b is nearest to y.
 
-    The variance of y is the ``known`` one, with its degrees of freedom ``known_dof``, and v ``shape`` with
-    an unknown v, ``between`` runs. ``sigma`` (n) is by their sum, ``covariance`` (p, p) that of b. The values
+    The variance of y is the ``known`` one, with its degrees of freedom ``known_dof``, and ``scale`` times an
+    unknown one, ``between`` runs. ``sigma`` (n) is by their sum, ``covariance`` (p, p) that of b. The values
     have ``dof`` degrees of freedom, n - p, and Student's t of intervals ``t_dof``. ``chi2`` is by the known
     variance.
     """
@@ -45,7 +45,7 @@ class Line(NamedTuple):
     J: Any
     y: Column
     known: Column
-    shape: Column
+    scale: Column
     known_dof: float
     coefficients: Column
     covariance: Any
@@ -71,7 +71,7 @@ class Line(NamedTuple):
         return float(stdtrit(self.t_dof, 0.975))
 
 
-def fit_line(J: Any, y: Column, known: Column, shape: Column, known_dof: float = NORMAL_DOF) -> Line:
+def fit_line(J: Any, y: Column, known: Column, scale: Column, known_dof: float = NORMAL_DOF) -> Line:
     """Return the weighted least squares. Raises CannotSeparate.
 
     A known variance is taken as it is. If χ² is more than n - p, Paule and Mandel's v makes it equal to that,
@@ -80,12 +80,12 @@ def fit_line(J: Any, y: Column, known: Column, shape: Column, known_dof: float =
     dof, between, t_dof = len(y) - int(J.shape[1]), 0.0, known_dof
     chi2 = _solved(J, y, known)[2]
     if dof and chi2 > dof:
-        most = 1.001 * _solved(J, y, shape)[2] / dof  # χ² is less than n - p there
-        between = brentq(lambda v: 1 - dof / _solved(J, y, known + v * shape)[2], 0, most, xtol=1e-15 * most)
+        most = 1.001 * _solved(J, y, scale)[2] / dof  # χ² is less than n - p there
+        between = brentq(lambda v: 1 - dof / _solved(J, y, known + v * scale)[2], 0, most, xtol=1e-15 * most)
         t_dof = dof
-    variance = known + between * shape
+    variance = known + between * scale
     b, covariance, _ = _solved(J, y, variance)
-    return Line(J, y, known, shape, known_dof, b, covariance, np.sqrt(variance), dof, t_dof, chi2, between)
+    return Line(J, y, known, scale, known_dof, b, covariance, np.sqrt(variance), dof, t_dof, chi2, between)
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
@@ -138,9 +138,9 @@ def distances_from(line: Line, kept: Selection) -> tuple[Column, Any]:
 
     The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite.
     """
-    J, y, known, shape = line[:4]
-    others = fit_line(J[kept], y[kept], known[kept], shape[kept], line.known_dof)
-    between = others.between * shape
+    J, y, known, scale = line[:4]
+    others = fit_line(J[kept], y[kept], known[kept], scale[kept], line.known_dof)
+    between = others.between * scale
     of_line = np.einsum("ij,jk,ik->i", J, others.covariance, J)
     own = known + between
     spread = np.maximum(own + np.where(kept, -1, 1) * of_line, LEAST_SHARE * own)
