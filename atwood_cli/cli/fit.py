@@ -18,7 +18,6 @@ from .options import (
     Named,
     SheetName,
     argument,
-    check_figure,
     option,
     scene_option,
     with_options,
@@ -95,7 +94,6 @@ def fit(
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
     if "runs" in names and (not target.form or (target.form == "csv" and len(names) > 1)):
         raise SceneError("only", "runs", "takes --json, or --csv and no other name")
-    check_figure(picture)
     from ..laboratory import fit_of
     from ..laboratory.report import report_of
 

@@ -115,8 +115,7 @@ def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
             if "target" in taken:
                 arguments["target"] = _read_target(options)
             if FIGURE in groups:
-                asked = [options[name] for name in ("figure", "force", "bare", "symbols")]
-                arguments["picture"] = None if asked[0] is None else Picture(*asked)
+                arguments["picture"] = _read_picture(options)
             return command(**arguments)
 
         first, *others = ([_parameter(*named) for named in group.items()] for group in groups)
@@ -255,12 +254,15 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
 OUTPUT = results(*FORMS)
 
 
-def check_figure(picture: Picture | None) -> None:
-    """Raise the errors of a picture before anything is solved: SceneError, OSError, ImportError."""
-    if picture is not None:
-        from ..output.figure import check_picture
+def _read_picture(options: Mapping[str, Any]) -> Picture | None:
+    """Read what is asked of a picture, None if it is not. Raises SceneError, OSError, ImportError."""
+    if options["figure"] is None:
+        return None
+    from ..output.figure import check_picture
 
-        check_picture(picture)
+    picture = Picture(*(options[name] for name in ("figure", "force", "bare", "symbols")))
+    check_picture(picture)
+    return picture
 
 
 # Help

@@ -7,7 +7,7 @@ from typing import Annotated
 from ..output.forms import Destination, Picture, Report, show
 from ..reading.inputs import read_whole
 from ..reading.names import read_names
-from .options import DONE, FIGURE, check_figure, option, results, with_options
+from .options import DONE, FIGURE, option, results, with_options
 
 
 def _families() -> Mapping[str, str]:
@@ -57,7 +57,6 @@ def tradeoff(
     from ..tradeoff.measure import FAMILIES, MOST_SCENES, draw_scenes, measure
 
     families = list(dict.fromkeys(read_names("family", family or FAMILIES, FAMILIES, "family of scenes")))
-    check_figure(picture)
     count = read_whole("scenes", DEFAULT_SCENES if scenes is None else scenes, 1, MOST_SCENES)
     parts = (measure(name, draw_scenes(name, count)) for name in families)
     with progress(parts, len(families)) as measuring:

@@ -18,7 +18,7 @@ from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..solver import arc
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
-from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_picture, saved, typeset, write_beside
+from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, saved, typeset, write_beside
 from .forms import Picture
 
 if TYPE_CHECKING:
@@ -40,7 +40,6 @@ ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the a
 
 def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None:
     """Draw the machine, and with ``curves`` the forces along the arc. Raises SceneError, OSError."""
-    check_picture(picture)
     kind = kind_of(answers.decided) if answers.decided.light else None  # else an end is fixed to the pulley
     answers = answers.rounded_to(min(answers.digits or SHOWN_DIGITS, SHOWN_DIGITS))
     decided = answers.decided

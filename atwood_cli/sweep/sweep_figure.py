@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..explain.messages import unmarked
 from ..numbers.digits import is_infinite
-from ..output.figure import COLOURS, FAINT, INK, axis_words, check_picture, saved, typeset, write_beside
+from ..output.figure import COLOURS, FAINT, INK, axis_words, saved, typeset, write_beside
 from ..output.forms import Picture
 from ..output.text import wrapped
 from ..solver.answers import Answers
@@ -139,7 +139,6 @@ def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: 
     Raises SceneError, OSError, and ArithmeticError if there is nothing to draw.
     """
     names = _drawable(sweep, names)
-    check_picture(picture)
     along, panels = sweep.along, panels_of(sweep, names, digits)
     inputs = [words for name, words in sweep.inputs.items() if name != along.name]
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
