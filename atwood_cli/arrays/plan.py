@@ -188,11 +188,9 @@ def plan(task: Task, accuracy: Accuracy, adjoin: bool) -> tuple[Program, list[St
     for step_task in tasks:
         step = _step(step_task, accuracy, formulas)
         if step.question and adjoin and LEVELS[accuracy][task.level] is DOUBLES:
-            usual = step.question.usual_answer
-            tasks += [others for answer, others in step.tasks_by_answer if answer == usual]
-            step = step._replace(
-                tasks_by_answer=[other for other in step.tasks_by_answer if other[0] != usual]
-            )
+            usual, by_answer = step.question.usual_answer, step.tasks_by_answer
+            tasks += [usual_task for answer, usual_task in by_answer if answer == usual]
+            step = step._replace(tasks_by_answer=[other for other in by_answer if other[0] != usual])
         steps.append(step)
     return Program(formulas), steps
 
