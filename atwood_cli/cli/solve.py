@@ -1,12 +1,12 @@
 """`atwood solve`: one scene, as a table, JSON, CSV, bare values, or with its derivation."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Annotated
 
 from ..explain.conditions import failure, read_condition
 from ..explain.messages import reasons
 from ..output.forms import Destination, Picture, Report, show
-from ..output.page import Page
 from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_steps, print_table, record
 from ..output.text import cell, say
 from ..reading.answers import read_answers
@@ -90,18 +90,12 @@ def solve(
         from ..output.scene_figure import save_scene
 
         save_scene(answers, picture)
-
-    def print_page(page: Page) -> None:
-        if explain:
-            print_steps(page, answers, names)
-        else:
-            print_table(page, answers, names or all_, budget)
-
     values = [cell(answers[name]) for name in names]
+    table = partial(print_table, answers=answers, only=names or all_, budget=budget)
     report = Report(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
-        page=print_page,
+        page=partial(print_steps, answers=answers, names=names) if explain else table,
         notes=lambda: notes_on_stderr(answers, names, values=not target.form),
         bare=[] if explain else values,
         below=(lambda page: print_budget(page, answers, names)) if budget else None,

@@ -57,10 +57,10 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
     names = dict.fromkeys(only or [*measured_quantities(answers), *MOTION])
     known = [name for name in names if name != "regime" and derivation.exists(name)]
     if only:
-        decides = (
-            ["mu_verge"] if derivation.decided.pulley_known else ["least_heavier_mass", "mu_verge_massless"]
-        )
-        wanted = [*known, *(decides if "regime" in only else ())]
+        wanted = [*known]
+        if "regime" in only:  # which these decide
+            known_pulley, unknown_pulley = ["mu_verge"], ["least_heavier_mass", "mu_verge_massless"]
+            wanted += known_pulley if derivation.decided.pulley_known else unknown_pulley
         paragraphs = _needed(paragraphs, {*map(derivation.symbol, wanted)})
     answer = [verdict(answers)]
     if known:
@@ -111,7 +111,6 @@ def _needed(paragraphs: Sequence[Paragraph], wanted: set[str]) -> list[Paragraph
 
 
 def _paragraphs(derivation: Derivation) -> Iterator[Paragraph]:
-    """Yield the paragraphs that apply to a scene."""
     text = files(__package__).joinpath("derivation.md").read_text("utf-8")
     conditions, title = _conditions(derivation), ""
     for block in text.format_map(_fields(derivation)).split("\n\n"):

@@ -141,7 +141,6 @@ class Derivation:
         return symbols
 
     def symbol(self, name: str) -> str:
-        """Return the symbol of a quantity."""
         return self.symbols.get(name) or QUANTITIES[name].letters
 
     def formula(self, symbol: str) -> Formula:

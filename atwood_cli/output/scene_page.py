@@ -51,9 +51,8 @@ def csv_record(answers: Answers, names: Sequence[str], budget: bool) -> dict[str
 
 def _uncertainties(answers: Answers, names: Sequence[str]) -> dict[str, object]:
     """Return the standard uncertainties of the quantities named, {} if all inputs are exact."""
-    return (
-        {name: answers.uncertainty(name) for name in names if name != "regime"} if answers.uncertain else {}
-    )
+    uncertain = [name for name in names if answers.uncertain and name != "regime"]
+    return {name: answers.uncertainty(name) for name in uncertain}
 
 
 def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> list[str]:
@@ -61,14 +60,10 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
     With ``values``, uncertain ones are said with their uncertainties.
     """
-    sentences = [quantity_in_words(answers, name) for name in names if values and answers.uncertainty(name)]
-    assumptions = [f"{name}: {why}." for name, why in answers.decided.assumptions.items() if name in names]
-    sentences = assumptions + sentences
-    return [
-        *sentences,
-        *map(unmarked, remarks(answers.to_six_digits)),
-        *reasons(answers, names or answers.names),
-    ]
+    sentences = [f"{name}: {why}." for name, why in answers.decided.assumptions.items() if name in names]
+    sentences += [quantity_in_words(answers, name) for name in names if values and answers.uncertainty(name)]
+    sentences += map(unmarked, remarks(answers.to_six_digits))
+    return sentences + reasons(answers, names or answers.names)
 
 
 MAIN = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force")

@@ -91,9 +91,8 @@ def panels_of(sweep: Sweep, names: Sequence[str], digits: int | None = None) -> 
             panels.setdefault(QUANTITIES[name].unit, []).extend(curves)
     if not panels:
         answers = [answer for _, _, solved in scenes for answer in solved.values()]
-        why = unmarked(
-            "; ".join(dict.fromkeys(answer.answer(name).reason for name in names for answer in answers))
-        )
+        reasons = dict.fromkeys(answer.answer(name).reason for name in names for answer in answers)
+        why = unmarked("; ".join(reasons))
         raise ArithmeticError(f"{', '.join(names)} exists at no point, so there is nothing to draw: {why}")
     return [*panels.values()]
 
@@ -105,14 +104,13 @@ def _numbers(curves: Sequence[Curve]) -> list[float]:
 def _curve(
     along: Range, name: str, point: str, in_order: list[Change], solved: dict[float, Answers]
 ) -> Curve:
-    """Return the curve of a quantity."""
     heights = {x: _height(answers[name]) for x, answers in solved.items()}
     marks = []
     for change in in_order:
         if change.before[0] != change.after[0]:
-            places = sorted(
-                (change.holds_at, change.differs_at), reverse=change.after[0] != "slip"
-            )  # there it holds
+            places = [change.holds_at, change.differs_at]
+            if change.after[0] != "slip":
+                places.reverse()  # the string holds there
             height = next((y for x in places if not isnan(y := heights[float(x)])), nan)
             words = f"{BEGINS[change.after[0]]} {along.in_units(change.at)}"
             marks.append((float(change.at), height, words))
