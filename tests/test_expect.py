@@ -46,6 +46,7 @@ def test_a_quantity_whose_unit_nobody_reads_is_compared_with_plain_numbers(
     """It ended in a KeyError, as the names of dimensions stood in a list of their own."""
     monkeypatch.setitem(QUANTITIES, "torque", QUANTITIES["torque"]._replace(unit="kg furlong"))
     answers = read_answers({"m1": 1, "m2": 3, "M": 10, "R": 1}, None)
+    assert not failure(answers, read_condition("angular_acceleration > 2.17rad/s2"))
     assert failure(answers, read_condition("torque < 1")).endswith("it is 10.8963 kg furlong")
     with pytest.raises(SceneError, match="must be a plain number, without the 'Nm'"):
         read_condition("torque < 1Nm")
