@@ -17,14 +17,13 @@ import polars as pl
 import pytest
 
 from atwood_cli import SceneError, fit, solve, solve_arrays, solve_table
-from atwood_cli.reading.inputs import read_scene
-from atwood_cli.solver.quantities import NAMES
+from atwood_cli.reading.answers import read_answers
 
 from .conftest import many
 from .tools import oracle
 from .tools.doors import DOUBLES, TEXTS, Door, solve_any, within_promise
 from .tools.regenerate import CASES, KEPT, essence
-from .tools.scenes import DANGERS, FAMILIES, ON_AN_AXLE, Given, as_doubles, scenes
+from .tools.scenes import DANGERS, FAMILIES, MEASURED, ON_AN_AXLE, Given, as_doubles, scenes
 
 BOUNDS = ("friction_force_min", "friction_force_max")
 """They have no closed form: test_contact checks those of `solve`, with which the other doors must agree."""
@@ -54,8 +53,8 @@ def check(door: Door, tried: Sequence[Given], truths: Sequence[Mapping[str, Any]
 
 
 def truth(given: Given) -> dict[str, Any]:
-    found = oracle.expected(read_scene(given))
-    return {name: found[name] for name in NAMES if name not in BOUNDS}
+    found = oracle.expected(read_answers(given, None).decided.scene)
+    return {name: value for name, value in found.items() if name not in BOUNDS}
 
 
 def count_of(family: str) -> int:
@@ -70,6 +69,17 @@ def test_values_of_what_is_typed(family: str) -> None:
         check(door, tried, truths)
     regimes = Counter(found["regime"] for found in truths)
     assert family not in FAMILIES or min(regimes["slip"], regimes["no-slip"]) >= many(50)
+
+
+@pytest.mark.parametrize(
+    "family", [f"{family}{axle}{MEASURED}" for axle in ("", ON_AN_AXLE) for family in FAMILIES]
+)
+def test_values_of_measured_motions(family: str) -> None:
+    tried = list(scenes(family, max(8, many(200))))
+    truths = [truth(given) for given in tried]
+    for door in TEXTS.values():
+        if door.takes_motion:
+            check(door, tried, truths)
 
 
 @pytest.mark.parametrize("family", [*USUAL, *DANGERS])

@@ -71,6 +71,12 @@ def test_an_int_too_long_to_write_out_is_still_an_error_that_can_be_shown() -> N
     assert read_scene({"m1": Fraction(1, 10**1500 - 1), "m2": "1"}).m1.denominator == 10**1500 - 1
 
 
+@pytest.mark.parametrize(("m1", "m2", "a"), [(1, 3, 9), (3, 1, -9), (1, "1.1", 9), (7, "2.9", -9)])
+def test_about_the_greatest_acceleration_that_an_error_names_is_taken(m1: Any, m2: Any, a: int) -> None:
+    greatest = error(m1=m1, m2=m2, M="inf", a=a).split("without friction the acceleration is ")[1].split()[0]
+    assert solve(m1=m1, m2=m2, M="inf", a=Fraction(greatest) * Fraction("0.99999")).mu_k is not None
+
+
 def test_error_carries_its_parts() -> None:
     with pytest.raises(ValueError, match="mu_k") as caught:
         solve(m1=1, m2=3, mu_k=1)

@@ -3,7 +3,7 @@
 import csv
 import io
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from math import isnan, ulp
 from typing import Any, NamedTuple
@@ -12,7 +12,7 @@ import numpy as np
 import polars as pl
 
 from atwood_cli import REGIMES, solve, solve_arrays, solve_table
-from atwood_cli.solver.quantities import NAMES
+from atwood_cli.solver.quantities import NAMES, QUANTITIES
 from atwood_cli.solver.scene import INPUTS
 
 from .running import called
@@ -26,6 +26,7 @@ class Door(NamedTuple):
     """A way to the values of scenes, and how right they are: to digits, or to the double that is nearest.
 
     A slow one is tried on every so many scenes. What stands on paper has nothing where a value is infinite.
+    Not all of them take measured motions.
     """
 
     open: Callable[[Sequence[Given]], Iterator[Values]]
@@ -33,6 +34,7 @@ class Door(NamedTuple):
     every: int = 1
     on_paper: bool = False
     certified: bool = False
+    takes_motion: bool = True
 
 
 def within_promise(got: float, nearest: float) -> bool:
@@ -42,7 +44,7 @@ def within_promise(got: float, nearest: float) -> bool:
 
 def words(given: Given) -> list[str]:
     """The options that give the scene."""
-    return [word for name, text in given.items() for word in (f"--{name.replace('_', '-')}", text)]
+    return [f"--{name.replace('_', '-')}={text}" for name, text in given.items()]
 
 
 def out_of(command: str, given: Given, *more: str) -> str:
@@ -53,7 +55,7 @@ def out_of(command: str, given: Given, *more: str) -> str:
 
 
 def of_solutions(
-    digits: int | None, names: Sequence[str] = NAMES
+    digits: int | None, names: Sequence[str] = ("regime", *QUANTITIES)
 ) -> Callable[[Sequence[Given]], Iterator[Values]]:
     def values(scenes: Sequence[Given]) -> Iterator[Values]:
         for given in scenes:
@@ -75,7 +77,7 @@ def of_sweeps(scenes: Sequence[Given]) -> Iterator[Values]:
     """The first row of two."""
     for given in scenes:
         swept = given | {"m2": f"{given['m2']},{given['m1']}"}
-        yield next(of_csv(out_of("sweep", swept, "--csv", "--only", ",".join(NAMES))))
+        yield next(results(of_csv(out_of("sweep", swept, "--csv", "--only", ",".join(NAMES)))))
 
 
 def of_contact(scenes: Sequence[Given]) -> Iterator[Values]:
@@ -97,13 +99,18 @@ def of_batch(scenes: Sequence[Given]) -> Iterator[Values]:
     writer.writerows(scenes)
     ran = called(["batch", "-", "--only", ",".join(NAMES)], table.getvalue().encode())
     assert "no errors" in ran.err, ran.err
-    return of_csv(ran.out)
+    return results(of_csv(ran.out))
 
 
 def of_table(scenes: Sequence[Given]) -> Iterator[Values]:
     columns = {name: [float(given[name]) if name in given else None for given in scenes] for name in INPUTS}
     frame = solve_table(pl.DataFrame(columns, schema=dict.fromkeys(INPUTS, pl.Float64)), NAMES)
-    return frame.iter_rows(named=True)
+    return results(frame.iter_rows(named=True))
+
+
+def results(rows: Iterable[Values]) -> Iterator[Values]:
+    """Without the columns of inputs, m1 and so on."""
+    return ({name: row[name] for name in NAMES} for row in rows)
 
 
 def of_arrays(accuracy: Any) -> Callable[[Sequence[Given]], Iterator[Values]]:
@@ -138,12 +145,12 @@ TEXTS = {
     **{f"{digits} digits": Door(of_solutions(digits), digits, every=8) for digits in (1, 17)},
     # The bounds of friction, which are roots, take a second each.
     "1000 digits": Door(
-        of_solutions(1000, [name for name in NAMES if "_force_m" not in name]), 1000, every=32
+        of_solutions(1000, [name for name in QUANTITIES if "_force_m" not in name]), 1000, every=32
     ),
     "JSON": Door(of_json(), every=16, on_paper=True),
     "JSON, 30 digits": Door(of_json("--digits", "30"), 30, every=16, on_paper=True),
-    "a sweep": Door(of_sweeps, every=16, on_paper=True),
-    "contact": Door(of_contact, every=16, on_paper=True),
+    "a sweep": Door(of_sweeps, every=16, on_paper=True, takes_motion=False),
+    "contact": Door(of_contact, every=16, on_paper=True, takes_motion=False),
 }
 """Doors for scenes as people type them."""
 DOUBLES = {

@@ -7,7 +7,8 @@ is rational it is a Fraction. `correctly_rounded` raises the precision until the
 from collections.abc import Callable
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
-from math import inf
+from functools import partial
+from math import inf, isqrt
 from typing import Any
 
 import flint
@@ -87,13 +88,55 @@ def sign(value: Callable[[], flint.arb]) -> int:
         flint.ctx.prec *= 2
 
 
+def root(square: Any) -> Any:
+    """A square root, exact where it is rational."""
+    if isinstance(square, flint.arb):
+        return square.sqrt()
+    exact = rational(Fraction(isqrt(int(square.p)), isqrt(int(square.q))))
+    return exact if exact**2 == square else lambda: flint.arb(square).sqrt()
+
+
+def side(x: Any) -> int:
+    return int(x > 0) - int(x < 0)
+
+
+def measured(scene: Any) -> tuple[Any, Scene]:
+    """The acceleration that was measured, positive when m2 descends, and the scene with what it finds.
+
+    T1 = m1 (g + a) and T2 = m2 (g - a), by (1); T2 - T1 = c a + d f, by (3), as the masses move the way d.
+    """
+    m1, m2, g, beta, finds = scene.m1, scene.m2, scene.g, scene.inertia, scene.motion.finds
+    if finds is None:
+        return None, scene
+    a, s, t, v, *_ = scene.motion
+    if a is None:  # from rest: s = a t²/2, v = a t
+        a = v / t if s is None else v * v / (2 * s) if t is None else 2 * s / t**2
+        a *= (-1 if m2 == 0 else 1) if finds in ("m1", "m2") else side(m2 - m1)
+    c = scene.I / scene.R**2 if scene.I else 0 if scene.M in (None, inf) else beta * scene.M
+    d = (side(m2 - m1) or -side(a)) if finds == "axle" else side(a)
+    f = d * (scene.axle or 0)
+    laws: dict[str, Callable[[], Any]] = {
+        "m1": lambda: (m2 * (g - a) - c * a - f) / (g + a),
+        "m2": lambda: (m1 * (g + a) + c * a + f) / (g - a),
+        "M": lambda: (m2 * (g - a) - m1 * (g + a) - f) / a / beta,
+        "g": lambda: ((m1 + m2 + c) * a + f) / (m2 - m1),
+        "axle": lambda: (m2 * (g - a) - m1 * (g + a) - c * a) * d,
+    }
+    return a, scene._replace(**{finds: laws[finds]()}) if finds in laws else scene
+
+
 def expected(scene: Scene) -> dict[str, Any]:
-    """Regime and every quantity, as the contract says; None where undetermined."""
+    """Regime and every quantity, as the contract says; None where undetermined.
+
+    What a measured motion finds is computed anew.
+    """
+    found_a, scene = measured(scene)
+    finds = scene.motion.finds
     locked = scene.M == inf
     g, mu, mu_k, R, beta = map(rational, (scene.g, scene.mu, scene.mu_k, scene.R, scene.inertia))
     mass = None if locked else rational(scene.M)
     l, h = sorted(map(rational, (scene.m1, scene.m2)))
-    s = (scene.m2 > scene.m1) - (scene.m2 < scene.m1)
+    s = side(scene.m2 - scene.m1) or (-side(found_a) if finds == "axle" else 0)  # the way it moves
     zero, one, wrap = rational(0), rational(1), rational(scene.wrap.number)
     c = None
     if scene.I is not None:
@@ -106,13 +149,13 @@ def expected(scene: Scene) -> dict[str, Any]:
     f = zero
     if scene.axle is not None:
         f = rational(scene.axle)
-    rests = 0 < (h - l) * g <= f  # the axle holds the pulley
+    rests = 0 < (h - l) * g <= f and finds != "axle"  # the axle holds the pulley
     held = locked or rests
     known = held or c is not None
     equal = s == 0 or (c == 0 and f == 0)
 
     def phi() -> Any:
-        return flint.arb.pi() * wrap / 180
+        return flint.arb(wrap) if scene.wrap.unit == "rad" else flint.arb.pi() * wrap / 180
 
     def of_k(coefficient: Any, formula: Callable[[Any], Any]) -> Any:
         """A formula with the capstan ratio k, which is 1 without friction."""
@@ -141,9 +184,11 @@ def expected(scene: Scene) -> dict[str, Any]:
     if f and l and s and not rests:
         turning = ratio(falls(zero))  # of a pulley without mass, against the axle
     always = bool(turning is not None and mu is not None and beats(turning))
-    out: dict[str, Any] = dict.fromkeys(NAMES)
+    out: dict[str, Any] = dict.fromkeys((*NAMES, *MEASURED))
     slips_locked = bool(l and s and mu is not None and beats(h / l))
-    if mu is None or equal:
+    if finds == "mu_k":
+        regime = "slip"
+    elif mu is None or equal:
         regime = "no-slip"
     elif not known:
         regime = ("slip" if always else "verge") if slips_locked else "no-slip"
@@ -153,6 +198,7 @@ def expected(scene: Scene) -> dict[str, Any]:
 
     state: Any = None  # |a|, T_l, T_h
     friction_mu: Any = None
+    at_limit: Any
     if regime == "no-slip":
         if s == 0:
             state = zero, l * g, l * g
@@ -166,13 +212,18 @@ def expected(scene: Scene) -> dict[str, Any]:
         elif grip is not None and mu is None:
             friction_mu = lambda: log(grip) / phi()  # noqa: E731
     else:
-        used = mu if regime == "verge" or mu_k is None else mu_k
-        friction_mu = used
+        friction_mu = used = mu if regime == "verge" or mu_k is None else mu_k
+        at_limit = partial(of_k, used)
+        if finds == "mu_k":
+            sliding = ratio(rational(s * found_a))
+            friction_mu = zero if sliding == 1 else lambda: log(sliding) / phi()
+            at_limit = lambda formula: formula(sliding)  # noqa: E731
+            out["mu_k"] = friction_mu
         # (1) with T_h = k T_l: T_l = m_l (g + a), T_h = m_h (g - a).
         state = (
-            of_k(used, lambda k: g * (h - l * k) / (h + l * k)),
-            of_k(used, lambda k: 2 * l * h * g / (h + l * k)),
-            of_k(used, lambda k: 2 * l * h * g * k / (h + l * k)),
+            at_limit(lambda k: g * (h - l * k) / (h + l * k)),
+            at_limit(lambda k: 2 * l * h * g / (h + l * k)),
+            at_limit(lambda k: 2 * l * h * g * k / (h + l * k)),
         )
 
     def lift(v: Any) -> Any:
@@ -240,7 +291,8 @@ def expected(scene: Scene) -> dict[str, Any]:
         if l and equal:
             out["least_wrap"] = zero
         elif regime == "verge":
-            out["least_wrap"] = wrap if mu else zero
+            in_degrees = wrap if scene.wrap.unit == "°" else lambda: phi() * 180 / flint.arb.pi()
+            out["least_wrap"] = in_degrees if mu else zero
         elif grip is not None and mu:
             out["least_wrap"] = lambda: log(grip) / mu * 180 / flint.arb.pi()
         if slips_locked and not always and not rests and beta is not None:
@@ -264,10 +316,26 @@ def expected(scene: Scene) -> dict[str, Any]:
                 return l * k * (g + a) / (g - a)
 
             out["critical_heavier_mass"] = of_k(mu, critical_heavier_mass)
-    if state is not None and not locked and (scene.wrap.number - 180) % 360 == 0:
+    half_turns = scene.wrap.unit == "°" and (scene.wrap.number - 180) % 360 == 0
+    if state is not None and not locked and half_turns:
         pulley = out["critical_pulley_mass"] if regime == "verge" else mass
         if pulley is not None:
             out["axle_force"] = combine(lambda x, y, p: x + y + p * g, state[1], state[2], pulley)
+    if finds in FOUND:
+        out[FOUND[finds]] = rational(getattr(scene, finds))
+    if R is not None and finds == "axle":
+        out["axle_torque"] = f * R
+    if R is not None and finds == "M":
+        out["moment_of_inertia"] = c * R**2
+    fall: Any = (None if x is None else abs(rational(x)) for x in scene.motion[1:4])
+    drop, time, speed = fall
+    from_rest = finds != "axle" or s * found_a > 0
+    if {drop, time, speed} != {None} and from_rest and state is not None and state[0] != 0:
+        a = state[0]
+        height = lambda a: a * time**2 / 2 if speed is None else speed**2 / (2 * a)  # noqa: E731
+        out["drop"] = None if drop is not None else combine(height, a)  # v² = 2 a s
+        out["fall_time"] = time or combine(lambda a: root(2 * drop / a) if drop else speed / a, a)
+        out["final_speed"] = speed or combine(lambda a: root(2 * drop * a) if drop else a * time, a)
     return {name: Fraction(int(x.p), int(x.q)) if isinstance(x, flint.fmpq) else x for name, x in out.items()}
 
 
@@ -278,3 +346,7 @@ NAMES = """
     critical_pulley_mass critical_heavier_mass critical_lighter_mass
     least_heavier_mass least_pulley_mass least_wrap
 """.split()
+FOUND = {"M": "pulley_mass", "g": "gravity", "m1": "m1", "m2": "m2", "axle": "axle"}
+"""The quantity that is an input, if a motion finds it."""
+MEASURED = [*FOUND.values(), *"moment_of_inertia mu_k axle_torque drop fall_time final_speed".split()]
+"""The quantities of measured motions."""

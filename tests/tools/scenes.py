@@ -3,7 +3,7 @@
 import cmath
 import re
 from collections.abc import Callable, Iterator
-from decimal import Context, Decimal
+from decimal import ROUND_DOWN, Context, Decimal
 from fractions import Fraction
 from math import degrees, exp, expm1, inf, ldexp, log, log1p, nextafter, pi, radians, ulp
 from random import Random
@@ -14,7 +14,9 @@ import flint
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.decisions import Decisions
-from atwood_cli.solver.scene import INPUTS
+from atwood_cli.solver.scene import FALL, INPUTS, MASSES
+
+from . import oracle
 
 Given = dict[str, str]
 
@@ -181,7 +183,7 @@ def whole_range(rng: Random) -> Given:
 FAMILIES: dict[str, Callable[[Random], Given]] = {
     f.__name__: f for f in (ordinary, nearly_equal, light_pulley, near_critical, whole_range)
 }
-ON_AN_AXLE = " on an axle"
+ON_AN_AXLE, MEASURED = " on an axle", " measured"
 
 
 def _vary(rng: Random, scene: Given) -> Given:
@@ -205,11 +207,52 @@ def _vary(rng: Random, scene: Given) -> Given:
 
 
 def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
-    """Scenes of a family, on an axle that rubs if its name says so, or of a danger."""
-    rng, usual = Random(f"{family} {seed}"), family.removesuffix(ON_AN_AXLE)
+    """Scenes of a family, on an axle that rubs and in a measured motion if its name says so, or of a danger."""
+    rng, usual = Random(f"{family} {seed}"), family.removesuffix(MEASURED).removesuffix(ON_AN_AXLE)
     for _ in range(count):
         given = _vary(rng, FAMILIES[usual](rng)) if usual in FAMILIES else typed(DANGERS[family](rng))
-        yield given if usual == family else with_axle(rng, given)
+        given = with_axle(rng, given) if ON_AN_AXLE in family else given
+        yield with_motion(rng, given) if family.endswith(MEASURED) else given
+
+
+def with_motion(rng: Random, given: Given) -> Given:
+    """The scene with one number of a fall from rest; or with a motion, and without the input that this finds."""
+    free = {name: text for name, text in given.items() if name not in ("mu", "mu_k")}
+    scene, kept = read_scene(free), oracle.expected(read_scene(given))
+    l, h, g, M = *sorted((scene.m1, scene.m2)), scene.g, scene.M
+    way, most = oracle.side(scene.m2 - scene.m1), g * (h - l) / (h + l)
+    a = abs(oracle.expected(scene)["acceleration"])
+    time, part = Fraction(_text(rng, _log_uniform(rng, -2, 2))), Fraction(10 ** rng.uniform(-9, 0))
+    share = rng.choice([Fraction(1), part])
+    finds_mass = (a or scene.axle is None) and (M or scene.I) and M != inf
+    motions: dict[str, Any] = {  # by what they find, of the heavier mass
+        "M": a * share if a and M and scene.I is None and M != inf else None,
+        "g": a * part * 1000 if a and (M or scene.I) else None,
+        **dict.fromkeys(MASSES, a * share if finds_mass else None),
+        "axle": a - (a + g) * part / 2 if M != inf else None,
+        "mu_k": most * share if M == inf and way else None,
+    }
+    if kept["regime"] == "slip" and M is not None:
+        least = Fraction(oracle.correctly_rounded(kept["acceleration"], 40)) * way
+        motions["mu_k"] = least + (most - least) * part if most - least > most / 10**15 else None
+    finds, a = rng.choice([("", None), *((x, a) for x, a in motions.items() if a is not None)])
+    sign = way or rng.choice([-1, 1])
+    if a is None or (a and not 1e-200 < abs(a) < 1e200):
+        return given | {rng.choice(FALL): _text(rng, _log_uniform(rng, -3, 3))}
+    if a.denominator > 10**300 or rng.random() < 0.5:  # so that it can be typed
+        context = Context(prec=40 if finds == "mu_k" else rng.choice([2, 17]), rounding=ROUND_DOWN)
+        a = Fraction(context.divide(Decimal(a.numerator), Decimal(a.denominator)))
+    measured = {"a": sign * a, **({rng.choice(FALL): time} if rng.random() < 0.3 else {})}
+    if (a > 0 and way) and rng.random() < 0.6:
+        fall = {"drop": a * time**2 / 2, "time": time, "speed": a * time}
+        measured = {
+            x: fall[x] * (sign if x != "time" and finds in MASSES else 1) for x in rng.sample(FALL, 2)
+        }
+    free.pop(finds, None)
+    if finds == "mu_k" and kept["regime"] == "slip":
+        free["mu"] = given["mu"]
+    found = {"find": finds} if finds == "axle" or rng.random() < 0.2 else {}
+    return free | {x: f"{value.numerator}/{value.denominator}" for x, value in measured.items()} | found
 
 
 def as_doubles(given: Given) -> Given | None:
