@@ -1,23 +1,31 @@
 """The outputs that are kept in files, and what prints each: python -m tests.tools.regenerate brings them up to date.
 
-It stops if the exit status of a transcript has changed, or if it prints nothing any more, until told `--accept`.
+It stops if the exit status of a transcript has changed, or if it prints nothing any more, until told `--accept`; and
+if a value of one scene is not the oracle's, whatever it is told.
 `python -m tests.tools.regenerate measured` measures the table and the picture of `examples/tradeoff.md` anew, in minutes.
 """
 
 import re
 import shlex
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, chdir
+from decimal import Decimal
 from functools import partial
 from importlib.util import find_spec
+from itertools import chain, pairwise, takewhile
 from pathlib import Path
 from shutil import which
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from atwood_cli.cli import COMMANDS
+from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.names import read_names
+from atwood_cli.solver.quantities import QUANTITIES
+from atwood_cli.solver.scene import INPUTS, MEASURED, SceneError
 
+from . import oracle
 from .running import TOP, called, labels, pages_seen, process, words_on
 
 EXAMPLES = TOP / "examples"
@@ -145,6 +153,31 @@ def essence(text: str) -> object:
     return text.replace("argument(s)", "arguments")  # as typer words it, by its version
 
 
+def denied(text: str) -> Iterator[str]:
+    """Values that transcripts of `atwood solve` print of a scene, and the oracle denies."""
+    for line, out in re.findall(r"^\$ atwood solve (.*)\n((?:(?!\$ ).*\n)*)", text, re.MULTILINE):
+        words = takewhile("|".__ne__, shlex.split(line))
+        parts = [word.split("=", 1) if word.startswith("--") else [word] for word in words]
+        options = [*pairwise(chain.from_iterable(parts))]
+        inputs = {x: dict(options).get(f"--{x.replace('_', '-')}") for x in (*INPUTS, *MEASURED, "find")}
+        try:
+            truth = oracle.expected(read_answers(inputs, None).decided.scene)
+            only = read_names("only", [names for option, names in options if option == "--only"], QUANTITIES)
+        except SceneError:  # as the transcript says
+            continue
+        out += "".join(f'  "{name}": {bare}\n' for name, bare in zip(only, out.splitlines(), strict=False))
+        for name in [name for name in QUANTITIES if truth[name] is not None]:
+            number, unit = r"(-?\d+(?:[.]\d+)?(?:e[-+]?\d+)?)(?:\s±\s\S+)?", QUANTITIES[name].unit
+            in_table = rf"[│|] {name}\b[^│|]*[│|] +{number} *[│|] {unit} *[│|]"
+            said = rf'^  "{name}": {number},?$|\b{name}\s=\s{number}\s{unit}(?!\w)'
+            for numbers in re.findall(f"{in_table}|{said}", out, re.MULTILINE):
+                number = "".join(numbers)
+                digits = len(Decimal(number).as_tuple().digits)
+                rounded = [oracle.correctly_rounded(truth[name], n) for n in (None, digits)]
+                if float(number) != rounded[0] and Decimal(number) != rounded[1]:
+                    yield f"{name} is {rounded[0]} and not {number}: {line}"
+
+
 def measure() -> None:
     """Write what `atwood tradeoff` measures on this machine into its page and its picture."""
     page = EXAMPLES / "tradeoff.md"
@@ -164,8 +197,14 @@ def ends_otherwise(before: str, after: str) -> bool:
 
 
 def regenerate(accept: bool) -> int:
-    """Write what has changed, unless a transcript ends otherwise and nobody has accepted that; returns a status."""
+    """Write what has changed, unless a transcript ends otherwise and nobody has accepted that; returns a status.
+
+    No value is written that the oracle denies.
+    """
     today = [(kept, kept.today()) for kept in KEPT if not kept.lacks]
+    if wrong := [words for _, fresh in today for words in denied(fresh)]:
+        print(*wrong, "Mend the program, or the oracle.", sep="\n")
+        return 1
     changed = [(kept, fresh) for kept, fresh in today if essence(fresh) != essence(kept.text)]
     doubtful = [fresh for kept, fresh in changed if ends_otherwise(kept.text, fresh)]
     if doubtful and not accept:
