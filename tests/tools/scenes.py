@@ -217,6 +217,7 @@ def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
 
 def with_motion(rng: Random, given: Given) -> Given:
     """The scene with one number of a fall from rest; or with a motion, and without the input that this finds."""
+    given = given | ({"m2": given["m1"]} if rng.random() < 0.05 else {})
     free = {name: text for name, text in given.items() if name not in ("mu", "mu_k")}
     scene, kept = read_scene(free), oracle.expected(read_scene(given))
     l, h, g, M = *sorted((scene.m1, scene.m2)), scene.g, scene.M
@@ -236,7 +237,9 @@ def with_motion(rng: Random, given: Given) -> Given:
         least = Fraction(oracle.correctly_rounded(kept["acceleration"], 40)) * way
         motions["mu_k"] = least + (most - least) * part if most - least > most / 10**15 else None
     finds, a = rng.choice([("", None), *((x, a) for x, a in motions.items() if a is not None)])
-    sign = way or rng.choice([-1, 1])
+    sign, signed = way or rng.choice([-1, 1]), finds in MASSES
+    if signed and a and rng.random() < 0.2:  # the other one is an end that is fixed to the pulley
+        sign, signed, free["m1"], free["m2"] = {"m1": -1, "m2": 1}[finds], False, "0", "0"
     if a is None or (a and not 1e-200 < abs(a) < 1e200):
         return given | {rng.choice(FALL): _text(rng, _log_uniform(rng, -3, 3))}
     if a.denominator > 10**300 or rng.random() < 0.5:  # so that it can be typed
@@ -245,9 +248,7 @@ def with_motion(rng: Random, given: Given) -> Given:
     measured = {"a": sign * a, **({rng.choice(FALL): time} if rng.random() < 0.3 else {})}
     if (a > 0 and way) and rng.random() < 0.6:
         fall = {"drop": a * time**2 / 2, "time": time, "speed": a * time}
-        measured = {
-            x: fall[x] * (sign if x != "time" and finds in MASSES else 1) for x in rng.sample(FALL, 2)
-        }
+        measured = {x: fall[x] * (sign if signed and x != "time" else 1) for x in rng.sample(FALL, 2)}
     free.pop(finds, None)
     if finds == "mu_k" and kept["regime"] == "slip":
         free["mu"] = given["mu"]
