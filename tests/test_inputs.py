@@ -81,7 +81,7 @@ def test_error_carries_its_parts() -> None:
     with pytest.raises(ValueError, match="mu_k") as caught:
         solve(m1=1, m2=3, mu_k=1)
     rule = "needs mu, the coefficient that decides whether it slips"
-    assert vars(caught.value) == {"parameter": "mu_k", "value": 1, "rule": rule}
+    assert vars(caught.value) == {"parameter": "mu_k", "value": 1, "rule": rule, "fault": "mu_k without mu"}
 
 
 @given(

@@ -6,14 +6,24 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from enum import IntEnum
 from fractions import Fraction
-from math import inf, nan
+from math import inf, isnan, nan
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..reading.inputs import is_missing
-from ..solver.scene import DEFAULTS, INERTIA_FACTORS, INPUTS, MASSES, SceneError, Terms, in_own_terms
+from ..reading.inputs import is_missing, read_exactly
+from ..solver.scene import (
+    DEFAULTS,
+    INERTIA_FACTORS,
+    INPUTS,
+    MASSES,
+    Scene,
+    SceneError,
+    Terms,
+    Unit,
+    in_own_terms,
+)
 from .doubles import WINDOW, Column
 from .plan import COLUMN, Pattern
 
@@ -52,6 +62,10 @@ class GivenColumn(NamedTuple):
         """Return rows of the column as if it were broadcast and flat; a single number stays single."""
         absent = None if self.absent is None else _cut(self.absent, shape, rows)
         return GivenColumn(_cut(self.doubles, shape, rows), absent)
+
+    def lacks(self, row: int) -> bool:
+        """Decide whether the input is not given in a row."""
+        return self.absent is not None and bool(_number(self.absent, row))
 
 
 def _cut(column: NDArray[Any], shape: tuple[int, ...], rows: Index) -> NDArray[Any]:
@@ -123,13 +137,6 @@ class Kind(IntEnum):
     USUAL, ABSENT, NAN, NEGATIVE, ZERO, INFINITE, BEYOND_WINDOW = range(7)
 
 
-OUTSIDE = {
-    name: {Kind.NEGATIVE}
-    | (set() if domain.may_be_zero else {Kind.ZERO})
-    | (set() if domain.may_be_infinite else {Kind.INFINITE})
-    for name, domain in INPUTS.items()
-}
-"""The kinds of numbers that are outside the domain of an input, by its name."""
 SAME_IN_ALL: dict[int, Any] = {Kind.ABSENT: None, Kind.ZERO: Fraction(0), Kind.INFINITE: inf}
 """The values that stand in a `Pattern` for the numbers of a kind; for other kinds it has a column."""
 
@@ -192,8 +199,7 @@ def _heavier(
 
 
 def _exact(name: str, given: GivenColumn, row: int) -> Fraction:
-    is_absent = given.absent is not None and _number(given.absent, row)
-    return IF_ABSENT[name] if is_absent else Fraction(float(_number(given.doubles, row)))
+    return IF_ABSENT[name] if given.lacks(row) else Fraction(float(_number(given.doubles, row)))
 
 
 def groups(given: Mapping[str, GivenColumn], size: int, terms: Mapping[str, Terms]) -> Iterator[Group]:
@@ -217,10 +223,10 @@ def groups(given: Mapping[str, GivenColumn], size: int, terms: Mapping[str, Term
     for key in np.unique(keys) if digits else keys[:1]:
         rows = np.flatnonzero(keys == key) if digits else slice(0, size)
         row = 0 if isinstance(rows, slice) else int(rows[0])
-        kinds = {name: int(_number(column, row)) for name, column in columns.items()}
-        if status := STATUSES.index(_fault(kinds, bool(_number(mu_k_above, row)), terms)):
+        if status := STATUSES.index(_fault(given, row, terms)):
             yield Group(rows, status, None, False)
             continue
+        kinds = {name: int(_number(column, row)) for name, column in columns.items()}
         pattern = {name: _in_pattern(name, kinds[name], column.doubles) for name, column in given.items()}
         if pattern["I"] is not None:
             pattern["inertia"] = None
@@ -234,25 +240,17 @@ def _number(column: NDArray[Any], row: int) -> Any:
     return column[row] if column.ndim else column[()]
 
 
-def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool, terms: Mapping[str, Terms]) -> str:
-    """Return the first fault of inputs of these kinds: whether they are in their domains and go together."""
-    given = {name for name, kind in kinds.items() if kind != Kind.ABSENT}
-    zero = {name for name, kind in kinds.items() if kind == Kind.ZERO}
-    faults = [
-        *(("NaN", kind == Kind.NAN) for kind in kinds.values()),
-        *((name, kind in OUTSIDE[name]) for name, kind in kinds.items()),
-        *((name, name not in given) for name in MASSES),
-        *((name, name in given and terms[name].by not in {*given, *DEFAULTS}) for name in terms),
-        ("I and inertia", given >= {"I", "inertia"}),
-        ("no mass", zero >= {"m1", "m2"}),
-        ("friction at a free end", bool(zero & {"m1", "m2"}) and "mu" in given),
-        ("mu_k without mu", "mu_k" in given and "mu" not in given),
-        ("mu_k above mu", mu_k_above_mu),
-        ("I without R", "I" in given and "R" not in given),
-        ("I with M = 0 or inf", "I" in given and kinds["M"] in (Kind.ZERO, Kind.INFINITE)),
-        ("valid", True),
-    ]
-    return next(fault for fault, is_so in faults if is_so)
+def _fault(given: Mapping[str, GivenColumn], row: int, terms: Mapping[str, Terms]) -> str:
+    """Return the first fault of a row, as the scene of it would have it; "valid" if it has none."""
+    numbers = {name: _number(column.doubles, row) for name, column in given.items() if not column.lacks(row)}
+    if any(map(isnan, numbers.values())):
+        return "NaN"
+    try:
+        read = {name: read_exactly(name, numbers.get(name)) for name in INPUTS}
+        Scene.of({name: one._replace(unit=Unit(terms=terms.get(name))) for name, one in read.items()})
+    except SceneError as error:
+        return error.fault
+    return "valid"
 
 
 def _in_pattern(name: str, kind: int, doubles: Column) -> Fraction | float | str | None:

@@ -140,11 +140,14 @@ MISSING_MASS = "is missing; give both masses, m1 and m2"
 
 
 class SceneError(ValueError):
-    """An error of an input: the ``parameter``, its ``value`` as given, and the ``rule`` that it breaks."""
+    """An error of an input: the ``parameter``, its ``value`` as given, and the ``rule`` that it breaks.
 
-    def __init__(self, parameter: str, value: object, rule: str) -> None:
+    ``fault`` names it among the statuses of arrays, as inputs do that are outside their domain or missing.
+    """
+
+    def __init__(self, parameter: str, value: object, rule: str, fault: str = "") -> None:
         super().__init__(parameter, value, rule)
-        self.parameter, self.value, self.rule = parameter, value, rule
+        self.parameter, self.value, self.rule, self.fault = parameter, value, rule, fault or parameter
 
     def __str__(self) -> str:
         return self.describe(self.parameter)
@@ -323,8 +326,8 @@ class Scene(NamedTuple):
         Raises SceneError if they contradict another.
         """
 
-        def refuse(name: str, rule: str) -> NoReturn:
-            raise SceneError(name, inputs[name].given, rule)
+        def refuse(name: str, rule: str, fault: str = "") -> NoReturn:
+            raise SceneError(name, inputs[name].given, rule, fault)
 
         numbers = {name: read.number for name, read in inputs.items()}
         terms = {name: read.unit.terms for name, read in inputs.items() if read.unit.terms}
@@ -340,25 +343,26 @@ class Scene(NamedTuple):
                 fixed = "" if M is I is None else f"; {mass} = 0 is an end fixed to the pulley"
                 refuse(mass, f"{MISSING_MASS}{fixed}")
         if I is not None and inertia is not None:
-            refuse("I", "and inertia both describe the pulley; give one of them")
+            refuse("I", "and inertia both describe the pulley; give one of them", "I and inertia")
         if I is None and inertia is None:
             values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
         if m1 == m2 == 0:
-            raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
+            raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang", "no mass")
         if mu is not None and 0 in (m1, m2):
             rule = "is an end of the string that is fixed to the pulley, where mu has no effect; leave mu out"
-            refuse("m1" if m1 == 0 else "m2", rule)
+            refuse("m1" if m1 == 0 else "m2", rule, "friction at a free end")
         if mu_k is not None and mu is None:
-            refuse("mu_k", "needs mu, the coefficient that decides whether it slips")
+            refuse("mu_k", "needs mu, the coefficient that decides whether it slips", "mu_k without mu")
         if mu_k is not None and mu_k > mu:
             alike = to_double(mu_k) == to_double(mu)  # then a float's digits are the point
             both = [Fraction(x) if alike else x for x in (mu_k, mu)]
             sizes = " > ".join(shortened(as_typed(x, inf)) for x in both)
-            refuse("mu_k", f"must not be above mu: {sizes}")
+            refuse("mu_k", f"must not be above mu: {sizes}", "mu_k above mu")
         if I is not None and values["R"] is None:
-            refuse("I", "needs the radius R as well")
+            refuse("I", "needs the radius R as well", "I without R")
         if I is not None and M is not None and not 0 < M < inf:
-            refuse("I", f"contradicts M = {shortened(str(inputs['M'].given))}; leave one of them out")
+            rule = f"contradicts M = {shortened(str(inputs['M'].given))}; leave one of them out"
+            refuse("I", rule, "I with M = 0 or inf")
         return cls(**values, motion=motion, terms=(*terms.items(),))
 
     def own(self, x: str) -> Any:
