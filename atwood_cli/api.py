@@ -11,7 +11,8 @@ from .explain.messages import notes
 from .numbers.digits import SHOWN_DIGITS
 from .numbers.text import nearest
 from .reading.answers import read_answers
-from .reading.inputs import OTHER_NAMES, read_digits
+from .reading.inputs import read_digits
+from .reading.names import input_meant
 from .solver.answers import Answers
 from .solver.quantities import MEASURED_NAMES, QUANTITIES, STANDARD
 from .solver.scene import Given, Scene
@@ -235,7 +236,7 @@ def solve(
         TypeError: There is no such input.
     """
     for name in given.keys() - Inputs.__annotations__.keys():
-        meant = OTHER_NAMES.get(name.lower())
+        meant = input_meant(name)
         hint = f"; did you mean {meant}?" if meant else nearest(name, Inputs.__annotations__)
         raise TypeError(f"solve() got an unexpected keyword argument {name!r}{hint}")
     inputs: dict[str, Any] = {"m1": m1, "m2": m2, **given}

@@ -81,24 +81,9 @@ class Pattern(NamedTuple):
         return Scene(**in_own_terms(fields, dict(self.terms)))
 
 
-class Question(NamedTuple):
-    """A question about each row: the method of `Decisions` that answers it, and its argument."""
-
-    method: str
-    at: str = ""
-
-    @property
-    def name(self) -> str:
-        """The name of a program's result that answers it."""
-        return f"{self.method} {self.at}"
-
-    @property
-    def usual_answer(self) -> bool:
-        """The answer of most rows: masses move, and nothing else is so."""
-        return self.method == "moves_axle"
-
-
-Branches = frozenset[tuple[Question, bool]]
+USUALLY_SO = ("moves_axle difference", "moves_axle heavy")
+"""The questions that most rows answer with yes; others they answer with no."""
+Branches = frozenset[tuple[str, bool]]
 """Questions, each with the answer of a group's rows."""
 
 
@@ -126,8 +111,7 @@ class _GroupDecisions(Decisions):
         super().__init__(task.pattern.scene(number))
         self.heavier_side, self._branches = task.pattern.heavier_side, dict(task.branches)
 
-    def _branch(self, method: str, at: str = "") -> bool:
-        question = Question(method, at)
+    def _branch(self, question: str) -> bool:
         if question not in self._branches:
             raise Undecided(question)
         return self._branches[question]
@@ -143,13 +127,13 @@ class _GroupDecisions(Decisions):
         return self._branch("ends_hang_down") if is_column else super().ends_hang_down
 
     def slips_at(self, at: LimitingCase) -> bool:
-        return self._branch("slips_at", at)
+        return self._branch(f"slips_at {at}")
 
     def slides_at(self, at: LimitingCase) -> bool:
-        return self.slips_at(at) if self.limit_is_static else self._branch("slides_at", at)
+        return self.slips_at(at) if self.limit_is_static else self._branch(f"slides_at {at}")
 
     def moves_axle(self, name: Literal["difference", "heavy"]) -> bool:
-        return self._branch("moves_axle", name)
+        return self._branch(f"moves_axle {name}")
 
 
 def _machine_of_columns(task: Task, ar: Doubles) -> Machine[Any]:
@@ -166,8 +150,8 @@ class Step(NamedTuple):
     """The reasons of quantities without a value."""
     row_by_row: tuple[str, ...]
     """Quantities that no program gives: rows are solved one by one."""
-    question: Question | None
-    """A question. The program gives each row's answer, and says by `condition_of` if it is sure."""
+    question: str
+    """A question, or "". The program gives each row's answer, and says by `condition_of` if it is sure."""
     tasks_by_answer: list[tuple[bool, Task]]
     """Answers, and the tasks of rows with these. Rows with another answer go on to the plan's next step."""
 
@@ -188,7 +172,7 @@ def plan(task: Task, accuracy: Accuracy, adjoin: bool) -> tuple[Program, list[St
     for step_task in tasks:
         step = _step(step_task, accuracy, formulas)
         if step.question and adjoin and LEVELS[accuracy][task.level] is DOUBLES:
-            usual, by_answer = step.question.usual_answer, step.tasks_by_answer
+            usual, by_answer = step.question in USUALLY_SO, step.tasks_by_answer
             tasks += [usual_task for answer, usual_task in by_answer if answer == usual]
             step = step._replace(tasks_by_answer=[other for other in by_answer if other[0] != usual])
         steps.append(step)
@@ -199,8 +183,7 @@ def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
     """Return a step, made by running the model on columns quantity by quantity, and add its formulas."""
     machine = _machine_of_columns(task, LEVELS[accuracy][task.level])
     missing: dict[str, str] = {}
-    uncertain, row_by_row, asking = [], [], []
-    question: Question | None = None
+    uncertain, row_by_row, asking, question = [], [], [], ""
     for name in task.names:
         try:
             if name == "regime":
@@ -208,7 +191,7 @@ def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
                 continue
             formulas[name], condition = proven_double(getattr(machine, name), accuracy)
         except Undecided as undecided:
-            question = question or undecided.args[0]
+            question = question or str(undecided)
             asking.append(name)
         except Undetermined as undetermined:
             formulas[name], missing[name] = nan, str(undetermined)
@@ -228,28 +211,27 @@ def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
 
 
 @lru_cache(KEPT_PLANS)
-def answering(task: Task, question: Question) -> Program:
+def answering(task: Task, question: str) -> Program:
     """Return the program that answers a question in pairs, and says by `condition_of` whether it is sure."""
     return Program(_answer(task, question, PAIRS))
 
 
-def _answer(task: Task, question: Question, ar: Doubles) -> dict[str, Term]:
+def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
     wrap = Formula("symbol", "wrap")
-    if question.method == "long_wrap":
-        return {condition_of(question.name): less(0.0, wrap), question.name: less(180.0, wrap)}
-    if question.method == "ends_hang_down":
+    if question == "long_wrap":
+        return {condition_of(question): less(0.0, wrap), question: less(180.0, wrap)}
+    if question == "ends_hang_down":
         is_half_turn = equal(Formula("fmod", wrap, formula(360.0)), 180.0)
-        return {condition_of(question.name): less(0.0, wrap), question.name: is_half_turn}
-    machine = _machine_of_columns(task, ar)
+        return {condition_of(question): less(0.0, wrap), question: is_half_turn}
+    machine, (method, point) = _machine_of_columns(task, ar), question.split()
     decided = machine.decided
-    if question.method == "moves_axle":
-        margin: Any = getattr(decided, question.at) * machine.g - machine.f
+    if method == "moves_axle":
+        margin: Any = getattr(decided, point) * machine.g - machine.f
     else:
-        mu = decided.scene.mu if question.method == "slips_at" else decided.limiting_mu
-        ratio_minus_1 = decided.ratio_minus_1(cast(LimitingCase, question.at), ar)
-        margin = ar.log1p(ratio_minus_1) - ar.number(mu) * machine.phi
+        mu = decided.scene.mu if method == "slips_at" else decided.limiting_mu
+        margin = ar.log1p(decided.ratio_minus_1(cast(LimitingCase, point), ar)) - ar.number(mu) * machine.phi
     sure = less(margin.row_error, 0.25 - margin.fixed_error)
-    return {condition_of(question.name): sure, question.name: less(0.0, margin.parts[0])}
+    return {condition_of(question): sure, question: less(0.0, margin.parts[0])}
 
 
 def nearest_double(task: Task, name: str, number: Callable[[str], Any]) -> float | None:

@@ -20,7 +20,7 @@ from ..solver.decisions import Decisions
 from ..solver.quantities import REGIMES, Accuracy
 from .doubles import Column
 from .inputs import Index
-from .plan import LEVELS, Question, Task, answering, condition_of, nearest_double, plan
+from .plan import LEVELS, Task, answering, condition_of, nearest_double, plan
 from .program import Program, columns_for
 
 TILE_ROWS = 65_536
@@ -70,8 +70,7 @@ class Rows:
                 yield select(rows, np.flatnonzero(remain)), last
             # The question splits the rows: some leave, and what asked is then written over in them.
             if question := step.question:
-                answers = flags[question.name]
-                unsure = np.flatnonzero(remain & ~flags[condition_of(question.name)])
+                answers, unsure = flags[question], np.flatnonzero(remain & ~flags[condition_of(question)])
                 answers[unsure] = self._ask(select(rows, unsure), step.task, question)
                 for answer, other_task in step.tasks_by_answer:
                     places = np.flatnonzero(remain & (answers == answer))
@@ -105,17 +104,18 @@ class Rows:
                     self.results[name][tile] = results[name]
         return flags
 
-    def _ask(self, rows: NDArray[np.intp], task: Task, question: Question) -> Flags:
+    def _ask(self, rows: NDArray[np.intp], task: Task, question: str) -> Flags:
         """Return each row's answer to a question that doubles leave open."""
         answers, sure = np.zeros((2, rows.size), np.bool_)
         # Pairs may decide it. They are not worth a program for few rows.
         if rows.size > ROWS_ONE_BY_ONE:
             flags = self._run(answering(task, question), rows)
-            answers, sure = flags[question.name], flags[condition_of(question.name)]
+            answers, sure = flags[question], flags[condition_of(question)]
         # Exact arithmetic decides the rest.
         for place in np.flatnonzero(~sure).tolist():
+            method, point = question.split()
             decided = Decisions(task.pattern.scene(partial(self.number, rows[place])))
-            answers[place] = getattr(decided, question.method)(question.at)
+            answers[place] = getattr(decided, method)(point)
         return answers
 
     def _solve_one_by_one(self, rows: Index, task: Task) -> None:

@@ -15,8 +15,8 @@ from ..explain.messages import LIKE_RADIANS, reasons_in
 from ..explain.tally import Tally
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
-from ..reading.inputs import NO_UNCERTAINTY, OTHER_NAMES, read_exactly
-from ..reading.names import divided
+from ..reading.inputs import NO_UNCERTAINTY, read_exactly
+from ..reading.names import divided, input_meant
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NAMES, REGIMES, STANDARD
@@ -134,8 +134,8 @@ def _meant(column: str) -> str:
     """Return what a heading may mean: in other letters, by another name, with a unit, or by a word in it."""
     for word, unit, is_loose in divisions(without_blanks(column)):
         letters = normalize("NFKC", word).casefold().translate(GREEK_SPELLED)
-        meant = OTHER_NAMES.get("_".join(re.findall("[0-9a-z]+", letters)))
-        if meant and not (is_loose and not is_unit(unit, Heading(0, column, meant))):
+        meant = input_meant("".join(re.findall("[0-9a-z]+", letters)))
+        if meant in INPUTS and not (is_loose and not is_unit(unit, Heading(0, column, meant))):
             return meant
     letters = normalize("NFKC", column[:LONGEST_HEADING]).translate(GREEK_SPELLED)
     words = " ".join(re.findall(r"[^\W\d_]+", letters))

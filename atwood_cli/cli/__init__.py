@@ -14,7 +14,7 @@ from typer.core import TyperCommand
 from .. import __version__
 from ..numbers.text import LONGEST_NAME, naming_the_extra, shortened
 from ..output.text import drop, finish, say
-from ..reading.inputs import OTHER_NAMES
+from ..reading.names import input_meant
 from ..solver.scene import SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_options
 
@@ -32,12 +32,6 @@ Examples:
 """
 
 DASHES = "-–—"
-OPTIONS_MEANT = {
-    **OTHER_NAMES,
-    **dict.fromkeys("v velocity v_final vf final_speed final_velocity".split(), "speed"),
-    **{"t": "time", "acceleration": "a", **dict.fromkeys("h height distance s".split(), "drop")},
-}
-"""The options that other words may mean."""
 # The parent of all usage errors, which typer does not export.
 UsageError: Any = typer.BadParameter.__base__
 ON_CTRL_C = 130
@@ -55,7 +49,7 @@ class Command(TyperCommand):
         for word, value in zip(args, [*args[1:], ""], strict=False):
             name = word.partition("=")[0]
             meant = f"--{name.lstrip(DASHES)}"  # word processors make such dashes of two
-            guess = flag(OPTIONS_MEANT.get(name.strip(DASHES).lower().replace("-", "_"), ""))
+            guess = flag(input_meant(name.strip(DASHES)))
             alike = [flag for flag in options if flag.lower() in (meant.lower(), guess.lower())]
             if alike and name not in options and name[0] in DASHES:
                 raise UsageError(f"No such option: {name}. Did you mean {alike[0]}?", ctx)

@@ -106,12 +106,9 @@ class Symbols:
         self.inputs = inputs
 
     def number(self, q: Fraction | int) -> Formula:
-        """Return the symbol of an input, which is this object, as two may be equal; or a limit's 0 or 1."""
-        for symbol in self.inputs:
-            if symbol.of is q:
-                return Formula("symbol", symbol)
-        assert q in (0, 1), f"{q} is no input with a symbol"
-        return formula(int(q))
+        """Return the symbol of an input, which is this object, as two may be equal; or else the number."""
+        symbols = (Formula("symbol", symbol) for symbol in self.inputs if symbol.of is q)
+        return next(symbols, formula(int(q) if q == int(q) else q))
 
     def is_zero(self, x: Formula) -> bool:
         return is_number(x, 0) or bool(x.op == "symbol" and x.parts[0].of == 0)

@@ -7,8 +7,8 @@ from typing import Any
 
 from ..solver.answers import Answers
 from ..solver.scene import FINDABLE, INPUTS, MEASURED, Scene
-from .inputs import OTHER_NAMES, read_input
-from .names import read_name
+from .inputs import read_input
+from .names import OTHER_NAMES, read_name
 
 
 def read_answers(given: Mapping[str, Any], digits: int | None) -> Answers:
@@ -21,9 +21,8 @@ def read_answers(given: Mapping[str, Any], digits: int | None) -> Answers:
     else:
         from ..solver.inverse import read_motion
 
-        other_names = {name.replace("_", ""): meant for name, meant in OTHER_NAMES.items()}
         if find is not None:
-            find = read_name("find", str(find), FINDABLE, "input that a motion finds", other_names)
+            find = read_name("find", str(find), FINDABLE, "input that a motion finds", OTHER_NAMES)
         scene = read_motion(inputs, find)
     if not any(read.uncertainty for read in inputs.values()):
         return Answers(scene, digits, inputs)

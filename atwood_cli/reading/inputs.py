@@ -40,21 +40,6 @@ from .units import (
     read_number,
 )
 
-# fmt: off
-OTHER_NAMES = {
-    **{"mass1": "m1", "mass_1": "m1", "mass2": "m2", "mass_2": "m2"},
-    **dict.fromkeys("m mp m_p m_pulley pulley pulley_mass mass_pulley mass_of_pulley mass".split(), "M"),
-    **dict.fromkeys("mu_s mus mu_static static_friction friction coefficient coeff".split(), "mu"),
-    **dict.fromkeys("friction_coefficient coefficient_of_friction friction_coeff".split(), "mu"),
-    **{"muk": "mu_k", "mu_kinetic": "mu_k", "kinetic_friction": "mu_k"},
-    **{"gravity": "g", "beta": "inertia", "inertia_factor": "inertia", "moment_of_inertia": "I"},
-    **{"axle_friction": "axle", "bearing_friction": "axle"},
-    **{"r": "R", "radius": "R", "pulley_radius": "R", "wrap_angle": "wrap", "angle": "wrap", "phi": "wrap"},
-    **{name.lower(): name for name in (*reversed(INPUTS), *MEASURED) if name != "I"},  # i may count rows
-}
-# fmt: on
-"""The inputs that other names may mean, in small ASCII letters."""
-
 
 def read_scene(given: Mapping[str, Given | None]) -> Scene:
     """Read a scene, by parameter; absent or None is not given. Raises SceneError."""

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from ..numbers.text import nearest
 from ..solver.quantities import MEASURED_NAMES, NAMES, QUANTITIES, STANDARD
-from ..solver.scene import INPUTS, SceneError
+from ..solver.scene import INPUTS, MEASURED, SceneError
 
 SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
 ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
@@ -26,6 +26,38 @@ MEANT = {
     **dict.fromkeys("mcrit criticalmass".split(), "critical_pulley_mass"),
 }
 """What other words probably mean, in plain small letters."""
+
+
+MASS_WORDS = "m mass masse masa massa масса".split()
+WORDS = {
+    "M": "mp m_pulley pulley pulley_mass mass_pulley mass_of_pulley",
+    "mu": "mu_s mu_static static_friction friction coefficient coeff friction_coefficient friction_coeff"
+    " coefficient_of_friction",
+    "mu_k": "mu_kinetic kinetic_friction",
+    "g": "gravity",
+    "inertia": "beta inertia_factor",
+    "I": "moment_of_inertia",
+    "axle": "axle_friction bearing_friction",
+    "R": "r radius pulley_radius",
+    "wrap": "wrap_angle angle phi",
+    "a": "acceleration",
+    "drop": "h height distance s",
+    "time": "t",
+    "speed": "v velocity v_final vf final_speed final_velocity",
+}
+"""Other words for inputs and for what is measured."""
+OTHER_NAMES = {
+    **{f"{word}{number}": f"m{number}" for word in MASS_WORDS for number in (1, 2)},
+    **dict.fromkeys(("m", "mass"), "M"),
+    **{word.replace("_", ""): name for name, words in WORDS.items() for word in words.split()},
+    **{name.lower().replace("_", ""): name for name in (*reversed(INPUTS), *MEASURED) if name != "I"},
+}
+"""The inputs by their other names, in small letters and without underscores; i may count rows."""
+
+
+def input_meant(word: str) -> str:
+    """Return the input that a word may mean, whatever its letters, "" if it is none."""
+    return OTHER_NAMES.get(re.sub("[ _-]", "", word.lower()), "")
 
 
 def read_names(

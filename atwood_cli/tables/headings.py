@@ -15,6 +15,7 @@ from typing import NamedTuple
 from unicodedata import normalize
 
 from ..numbers.text import in_quotes, without_blanks
+from ..reading.names import MASS_WORDS
 from ..reading.units import PERCENT, UNITS, Malformed, read_unit, symbol_of
 from ..solver.scene import SceneError, Unit, parameter_of
 from .sources import Unreadable
@@ -31,8 +32,7 @@ DIVIDED = (rf"(.+?)[ /]*{BRACKET}", r"([^/]+?) ?(?:/| in ) ?(.+)")
 """The patterns of a name with its unit: m1 (g), m1 [g], a/(m/s²); m1/g, m1 in g."""
 LIKE_UNIT = re.compile(r"\w ?/ ?\w|\^|[²³]|s-[12]$")
 """The signs of a unit in brackets, also of one that is not known."""
-MASS_WORDS = "M m mass Mass masse Masse masa Masa massa Massa масса Масса".split()
-MASS_NAMES = {f"{word}{number}": f"m{number}" for word in MASS_WORDS for number in (1, 2)}
+MASS_NAMES = {f"{word}{n}": f"m{n}" for x in MASS_WORDS for word in (x, x.capitalize()) for n in (1, 2)}
 """The masses by names that can mean nothing else, without blanks."""
 LIKE_SUM = re.compile(r"(?i)total|gesamt|\bsum|somme|dif(f|[ei]r)|^\W*([Σ∑Δ∆]|delta|dm\b)|\bm[\w ]*[-–−+] ?m")
 """The headings of sums and of differences."""
