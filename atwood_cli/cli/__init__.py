@@ -125,8 +125,10 @@ def run(arguments: list[str] | None = None) -> int:
         drop(sys.stdout)  # its reader may have stopped, and writing would wait for ever
         raise KeyboardInterrupt from None
     except SystemExit as error:  # typer and rich exit if the reader of stdout has left
+        if COMPLETING in os.environ:  # fish goes by the status
+            return int(error.code or DONE)
         drop(sys.stdout)
-        return int(error.code or DONE) if COMPLETING in os.environ else DONE  # fish goes by the status
+        return DONE
     except tuple(ERRORS) as error:
         status, why = next(ERRORS[kind] for kind in type(error).__mro__ if kind in ERRORS)
         if words := why(error):
