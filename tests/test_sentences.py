@@ -225,7 +225,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
     "As M goes from 0 to inf: "
     + ", ".join(f"{name} from {NUMBER} to {NUMBER}(?: [^,]*)?" for name in OPEN)
     + r"\.": open_range,
-    rf"(.*?): ({RANGES})\.": out_of_range,
+    rf"(.*?): ({RANGES})(?:; ask for digits \(--digits 17\) to see it)?\.": out_of_range,
     rf"The inertia factor I/\(M R\^2\) is {NUMBER}, above 1: .*": inertia,
     rf"The wrap is {NUMBER}°; for radians write {NUMBER}rad, for turns {NUMBER}turn\.": short_wrap,
 }

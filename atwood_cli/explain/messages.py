@@ -21,9 +21,9 @@ from ..numbers.digits import (
     to_digits,
 )
 from ..reading.units import MAX_MAGNITUDE
-from ..solver.answers import Answers
+from ..solver.answers import ABOVE_DOUBLES, BELOW_DOUBLES, Answers
 from ..solver.physics import critical_heavier_mass
-from ..solver.quantities import FROM_MOTION, NAMES, QUANTITIES
+from ..solver.quantities import FROM_MOTION, NAMES, NEEDS_FIND_AXLE, QUANTITIES
 from ..solver.scene import MASSES, with_unit
 
 
@@ -149,6 +149,11 @@ def _in_unit_of(answers: Answers, limit: str, x: str) -> str:
     return f"{limit} is {'a weight of ' if unit.terms else ''}{with_unit(format_number(value), unit.symbol)}."
 
 
+TO_SEE_IT = "; ask for digits (--digits 17) to see it"
+WAYS = {ABOVE_DOUBLES: TO_SEE_IT, BELOW_DOUBLES: TO_SEE_IT, NEEDS_FIND_AXLE: " (--find axle)"}
+"""What to type, by the reason that a value is missing."""
+
+
 def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
     """Return a sentence for each reason that values are missing, without backticks.
 
@@ -160,7 +165,7 @@ def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
     sentences = []
     for (reason, times), group in names.items():
         place = "" if times == rows else f" (in {times} of {rows} rows)"
-        sentences.append(f"{', '.join(group)}: {unmarked(reason)}{place}.")
+        sentences.append(f"{', '.join(group)}: {unmarked(reason)}{WAYS.get(reason, '')}{place}.")
     return sentences
 
 

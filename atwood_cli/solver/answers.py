@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 TOO_LARGE = f"beyond 10^{LARGEST_EXPONENT}, the largest number written out"
 TOO_SMALL = f"not 0 but too small to be written out: about 10^-{LARGEST_EXPONENT} or less"
-ABOVE_DOUBLES = "beyond the range of doubles; ask for digits (--digits 17) to see it"
-BELOW_DOUBLES = "not 0 but below the range of doubles; ask for digits (--digits 17) to see it"
+ABOVE_DOUBLES = "beyond the range of doubles"
+BELOW_DOUBLES = "not 0 but below the range of doubles"
 
 
 class Answer(NamedTuple):

@@ -148,7 +148,7 @@ NEEDS_A_AND_M = "`give` `a`, a measured acceleration, with a finite `M`, and wit
 NEEDS_A_OF_A_SLIDE = (
     "`give` `a`, a measured acceleration, with `M` = `inf`, or with `M` and a `mu` that is too small"
 )
-NEEDS_FIND_AXLE = "`give` `a`, a measured acceleration, and find `axle` (--find axle)"
+NEEDS_FIND_AXLE = "`give` `a`, a measured acceleration, and find `axle`"
 NEEDS_FALL = (
     "`give` `drop`, the height that the heavier mass falls from rest, or `time` or `speed` of that fall"
 )
