@@ -25,7 +25,6 @@ from atwood_cli import REGIMES, SceneError, arrays, solve_arrays
 from atwood_cli.arrays import STATUSES
 from atwood_cli.arrays.plan import plan
 from atwood_cli.numbers.lazy import lazy
-from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.decisions import REGIME_ASSUMED, Decisions
 from atwood_cli.solver.quantities import ACCURACIES, NAMES, Accuracy
@@ -34,7 +33,7 @@ from atwood_cli.solver.scene import INPUTS, MASSES, TORQUE, WEIGHT
 from .conftest import examples
 from .tools.doors import columns_of, solve_any, within_promise
 from .tools.running import HANGS
-from .tools.scenes import DANGERS, ON_AN_AXLE, Given, Row, as_doubles, scenes
+from .tools.scenes import DANGERS, ON_AN_AXLE, Given, Row, as_doubles, read_scene, scenes
 
 Columns = dict[str, Any]
 

@@ -13,12 +13,11 @@ from scipy.sparse import diags_array, vstack
 
 from atwood_cli import SceneError, solve
 from atwood_cli.explain.contact import contact
-from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 
 from .conftest import many
 from .tools import oracle
-from .tools.scenes import inputs, of_all_kinds
+from .tools.scenes import inputs, of_all_kinds, read_scene
 
 
 def test_forces_along_the_arc_add_up_and_keep_to_the_limits_of_friction() -> None:

@@ -18,14 +18,13 @@ from atwood_cli.explain.given import inputs_in_words
 from atwood_cli.numbers.digits import is_infinite
 from atwood_cli.output.typeset import as_lines, as_markdown, chain, written
 from atwood_cli.reading.answers import read_answers
-from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES, QUANTITIES
 from atwood_cli.solver.scene import INPUTS, MASSES, Scene
 
 from .conftest import examples, many
 from .tools import oracle
-from .tools.scenes import FAMILIES, KINDS, inputs, scenes, table
+from .tools.scenes import FAMILIES, KINDS, inputs, read_scene, scenes, table
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 SCENES = {kind: inputs(words) for kind, words in table(KINDS)}

@@ -12,10 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import SceneError, solve
-from atwood_cli.reading.inputs import read_scene
 from atwood_cli.reading.units import UNITS
 from atwood_cli.solver.decisions import Decisions
 from atwood_cli.solver.scene import BODIES, Angle
+
+from .tools.scenes import read_scene
 
 NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 

@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 
 from atwood_cli.explain.messages import notes, unmarked
-from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver import answers as answers_
 from atwood_cli.solver import quantities as reasons
 from atwood_cli.solver.answers import Answers
@@ -20,7 +19,7 @@ from atwood_cli.solver.scene import Scene
 
 from .conftest import many
 from .tools import oracle
-from .tools.scenes import with_friction
+from .tools.scenes import read_scene, with_friction
 
 NUMBER = r"([-+\d.e]+)"
 

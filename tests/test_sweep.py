@@ -17,14 +17,13 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve
 from atwood_cli.numbers.digits import SHOWN_DIGITS
-from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import STANDARD
 from atwood_cli.sweep.ranges import Row, read_range, read_sweep, solve_rows
 from atwood_cli.sweep.sweep_figure import Curve, panels_of
 
 from .tools.running import FROM, TOP, Atwood, called, on_terminal, plain, process
-from .tools.scenes import of_all_kinds
+from .tools.scenes import of_all_kinds, read_scene
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]

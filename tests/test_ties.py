@@ -17,8 +17,9 @@ from atwood_cli.explain.contact import contact
 from atwood_cli.numbers.digits import to_digits
 from atwood_cli.numbers.settling import is_positive, settle
 from atwood_cli.reading.answers import read_answers
-from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
+
+from .tools.scenes import read_scene
 
 F = Fraction
 

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from atwood_cli import solve_arrays
-from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.quantities import REGIMES, STANDARD
 from atwood_cli.tradeoff import measure as tradeoff
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, draw_scenes, measure
@@ -20,6 +19,7 @@ from atwood_cli.tradeoff.tradeoff_page import LEGEND, short
 
 from .tools import oracle
 from .tools.running import Atwood, called
+from .tools.scenes import read_scene
 
 NAMES = [*SETTINGS]
 

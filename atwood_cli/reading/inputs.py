@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
@@ -13,19 +12,7 @@ from typing import Any
 
 from ..numbers.rational import OfFloat
 from ..numbers.text import in_quotes, nearest, shortened, without_blanks
-from ..solver.scene import (
-    DEFAULTS,
-    INPUTS,
-    MEASURED,
-    Angle,
-    Given,
-    Input,
-    Parameter,
-    Scene,
-    SceneError,
-    Unit,
-    parameter_of,
-)
+from ..solver.scene import DEFAULTS, MEASURED, Angle, Given, Input, Parameter, SceneError, Unit, parameter_of
 from .units import (
     MAX_DIGITS,
     MAX_MAGNITUDE,
@@ -39,11 +26,6 @@ from .units import (
     limited,
     read_number,
 )
-
-
-def read_scene(given: Mapping[str, Given | None]) -> Scene:
-    """Read a scene, by parameter; absent or None is not given. Raises SceneError."""
-    return Scene.of({name: read_exactly(name, given.get(name)) for name in INPUTS})
 
 
 def is_missing(value: object) -> bool:

@@ -390,8 +390,10 @@ class Scene(NamedTuple):
         """
         if x == "wrap":
             return self._replace(wrap=self.wrap._replace(number=number))
-        terms = dict(self.terms)
-        by = {kind.by: getattr(self, kind.by) for kind in terms.values()}
-        values = in_own_terms({**by, **{name: self.number_of(name) for name in terms}, x: number}, terms)
-        measured = {name: values.pop(name) for name in MEASURED if name in values}
-        return self._replace(**values, motion=self.motion._replace(**measured))
+        values, terms = {x: number}, dict(self.terms)
+        if terms:
+            by = {kind.by: getattr(self, kind.by) for kind in terms.values()}
+            values = in_own_terms(by | {name: self.number_of(name) for name in terms} | values, terms)
+        if measured := {name: values.pop(name) for name in MEASURED if name in values}:
+            values["motion"] = self.motion._replace(**measured)
+        return self._replace(**values)

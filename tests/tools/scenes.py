@@ -2,7 +2,7 @@
 
 import cmath
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from decimal import ROUND_DOWN, Context, Decimal
 from fractions import Fraction
 from math import degrees, exp, expm1, inf, ldexp, log, log1p, nextafter, pi, radians, ulp
@@ -11,10 +11,10 @@ from typing import Any
 
 import flint
 
-from atwood_cli.reading.inputs import read_scene
+from atwood_cli.reading.inputs import read_exactly
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.decisions import Decisions
-from atwood_cli.solver.scene import FALL, INPUTS, MASSES
+from atwood_cli.solver.scene import FALL, INPUTS, MASSES, Scene
 
 from . import oracle
 
@@ -25,6 +25,11 @@ def table(words: str) -> list[list[str]]:
     """The rows of a table, with bars between cells; an indented line goes on with the row above it."""
     rows = re.sub(r"\n\s+", " ", words.strip("\n")).splitlines()
     return [[cell.strip() for cell in row.split("|")] for row in rows]
+
+
+def read_scene(given: Mapping[str, Any]) -> Scene:
+    """The scene of inputs by name."""
+    return Scene.of({name: read_exactly(name, given.get(name)) for name in INPUTS})
 
 
 def inputs(words: str) -> dict[str, Any]:
