@@ -253,14 +253,14 @@ def test_a_mark_has_the_colour_of_its_curve_and_a_dot_that_of_none() -> None:
 
 
 def test_a_legend_has_the_order_of_the_curves_at_the_right_end() -> None:
-    """Twelve dots of this picture crowd: those beside which words have no room have none."""
+    """Twelve dots of this picture crowd, so that words have no room beside them: the legend says what they are."""
     page = drawn("sweep --m1 0.1:30:7 --m2 3 --M 50 --mu 0.05:0.3:6")
     (axes,) = page.axes
     legend = axes.get_legend()
     ends = {line.get_color(): line.get_ydata()[-1] for line in axes.lines if line.get_marker() == "None"}
-    entries = [ends[line.get_color()] for line in legend.get_lines()]
-    assert (len(entries), entries) == (6, sorted(entries, reverse=True))
-    assert sum(line.get_marker() == "o" for line in axes.lines) == 12
+    *entries, dot = [ends.get(line.get_color(), line.get_label()) for line in legend.get_lines()]
+    assert (len(entries), entries, dot) == (6, sorted(entries, reverse=True), "regime changes")
+    assert sum(line.get_marker() == "o" for line in axes.lines) == 12 + 1
 
 
 def test_a_scene_looks_the_same_in_all_panels() -> None:

@@ -146,11 +146,11 @@ def _in_lines(words: str) -> str:
 
 def write_beside(
     axes: "Axes", labels: Sequence[tuple[float, float, str, str]], all_or_none: bool = False
-) -> None:
+) -> bool:
     """Write words at points (x, y, words, colour) if they cover no other words and no lines there.
 
     No words are nearer to another point than to their own. With ``all_or_none``, no words are written if some
-    cannot be. Nothing may change the size of the axes afterwards.
+    cannot be. Nothing may change the size of the axes afterwards. Return whether all words are written.
     """
     figure: Any = axes.figure
     if labels:
@@ -172,9 +172,11 @@ def write_beside(
                 boxes.append(box)
                 break
             text.remove()
-    if all_or_none and len(boxes) < before + len(labels):
+    has_room = len(boxes) == before + len(labels)
+    if all_or_none and not has_room:
         for written in axes.texts[before:]:
             written.remove()
+    return has_room
 
 
 def _drawn(axes: "Axes") -> Iterator["MatplotlibPath"]:

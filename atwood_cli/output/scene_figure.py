@@ -59,10 +59,14 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
     lengths = {name: max(scale * force, SHORTEST) if force else 0.0 for name, force in forces.items()}
     below = [] if picture.symbols else [*_caption(answers, kind, wrap)]
     arrows = _arrows_on_arc(answers, kind, radians(wrap)) if kind else None
+    if arrows and picture.symbols and kind == "creep" and not curves:  # nothing says why it acts there
+        arrows = arrows._replace(friction=0 * arrows.friction)
     if arrows and (friction := abs(arrows.friction).max()):
-        below.append(
-            f"Friction is drawn at {arrows.normal.max() / friction:.3g} times the scale of the normal force."
-        )
+        ratio = arrows.normal.max() / friction
+        scale_of_friction = f"at {ratio:.3g} times the scale of"
+        if picture.symbols:  # that number is 1/μ, which is for students to find
+            scale_of_friction = f"at a {'larger' if ratio > 1 else 'smaller'} scale than"
+        below.append(f"Friction is drawn {scale_of_friction} the normal force.")
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
     given = inputs_with_effect(answers)

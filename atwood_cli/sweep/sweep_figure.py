@@ -155,11 +155,18 @@ def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: 
                 symbols = [axis_words(curve.quantity)[1]] if drawn.keys() - {curve.quantity} else []
                 _draw(axes, curve, place, ", ".join(filter(None, [*symbols, curve.point])), along.is_list)
             _set_heights(axes, _numbers(curves))
-            if axes.get_legend_handles_labels()[1]:
-                axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), handlelength=3, labelspacing=0.3)
+            _add_legend(axes)
         first = [curve for curve in panels[0] if curve.quantity == panels[0][0].quantity]
         labels = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
-        write_beside(all_axes[0], labels, all_or_none=True)
+        if not write_beside(all_axes[0], labels, all_or_none=True):
+            all_axes[0].plot([], [], "o", color=INK, ms=4, label="regime changes")
+            _add_legend(all_axes[0])
+
+
+def _add_legend(axes: "Axes") -> None:
+    """Explain the curves beside the axes, if they need it."""
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), handlelength=3, labelspacing=0.3)
 
 
 def _set_places(axes: "Axes", along: Range) -> None:
