@@ -25,7 +25,7 @@ VALUES = """
     least_pulley_mass least_wrap pulley_mass moment_of_inertia gravity m1 m2 mu_k axle axle_torque drop fall_time final_speed"""
 SCENE = "m1 m2 M mu mu_k g inertia I R wrap axle"
 FITTED = """rim_mass axle gravity delay pulley_mass moment_of_inertia uncertainty interval correlation chi2 dof
-    interval_dof between_runs runs notes"""
+    interval_dof between_runs between_runs_unit runs notes"""
 RIT = TOP / "examples" / "rit.csv"
 JSON = {
     "solve --m1 1 --m2 3": f"version scene terms found regime {VALUES} uncertainty budget notes",

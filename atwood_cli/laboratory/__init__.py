@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     import polars as pl
 
-    from .fitting import Fitted
+    from .estimate import Fitted
 
     class Frame(Protocol):
         """A frame of pandas, whose types need not be installed."""

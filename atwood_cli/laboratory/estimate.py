@@ -1,14 +1,17 @@
 """The rim mass c and the axle's friction f that fit runs best, by least squares: T_h - T_l = c a + f."""
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from math import inf, sqrt
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from ..solver import physics
-from .results import FITTED
+from ..solver.decisions import Decisions
+from ..solver.scene import Input, Scene
+from .results import FITTED, Result
 from .runs import Column, Places, Runs, Selection
 from .statistics import NORMAL_DOF, CannotSeparate, Line, fit_line, sum_of_squares
 
@@ -27,12 +30,17 @@ LEAST_SINGULAR = 4e-4
 TINY = 1e-100
 
 
+Varying = Literal["value", "time", "force"]
+"""What an unknown variance is of: single values, if nothing shows that, or the times or forces of runs."""
+
+
 class Data(NamedTuple):
     """Runs as a fit sees them (n): light and heavy masses apart, and what was measured, positive.
 
     ``drop`` is None for accelerations. ``measured`` are means of so many values as ``counts`` says.
     ``scatter`` is the standard uncertainty of a mean, ``stated`` or by its repeats, 0 without either.
     Its variance has ``known_dof`` degrees of freedom. ``uncertain`` has the uncertainties of other columns.
+    Beyond these runs scatter by what is ``varying``.
     """
 
     l: Column
@@ -44,6 +52,7 @@ class Data(NamedTuple):
     stated: bool
     known_dof: float
     uncertain: Mapping[str, Column]
+    varying: Varying
 
 
 def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
@@ -69,7 +78,9 @@ def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
     (l, u_l), (h, u_h) = np.where(m1[0] > m2[0], (m2, m1), (m1, m2))
     drop, u_drop = columns.get("drop", (None, 0 * l))
     uncertain = {x: u for x, u in (("l", u_l), ("h", u_h), ("drop", u_drop)) if u.any()}
-    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, known_dof, uncertain)
+    of_runs: Varying = "force" if drop is None else "time"
+    varying = of_runs if variance.any() else "value"
+    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, known_dof, uncertain, varying)
 
 
 # What is expected of runs
@@ -127,19 +138,14 @@ def slopes(residual: Residual, data: Data, values: Mapping[str, float], names: S
 
 
 def line_of(residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]) -> Line:
-    """Return the linear fit of changes of the ``names``, at these values. Raises CannotSeparate.
-
-    The unknown variance scales as that of a force that differs between runs, or as the scatter of single
-    values if nothing shows that.
-    """
+    """Return the linear fit of changes of the ``names``, at these values. Raises CannotSeparate."""
     by_measured = slope(residual, data, values, "measured")
     known = (by_measured * data.scatter) ** 2
     known = known + float(np.square(ROUNDING * by_measured * data.measured).max())  # no weight has no bound
     for name, u in data.uncertain.items():
         known = known + (slope(residual, data, values, name) * u) ** 2
-    scale = by_measured**2 / data.counts
-    if data.scatter.any():
-        scale = slope(residual, data, values, "axle") ** 2
+    root = slope(residual, data, values, "axle") if data.varying == "force" else by_measured
+    scale = root**2 / data.counts if data.varying == "value" else root**2
     J = slopes(residual, data, values, names)
     return fit_line(J, residual(data, values), known, scale, data.known_dof)
 
@@ -203,3 +209,65 @@ def estimate(
         if size < CLOSE or before < size < ENOUGH:
             return at(x.tolist()), line
     raise CannotSeparate
+
+
+def moves(data: Data, values: Mapping[str, float]) -> Selection:
+    """Decide for each run if the heavier mass would descend."""
+    return np.asarray(expected(data._replace(drop=None), values) > 0)
+
+
+class Conditions(NamedTuple):
+    """The inputs that all runs share, with ``drop`` if they share it."""
+
+    inputs: Mapping[str, Input]
+    scene: Scene
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Return the quantities of a fit that are given, and the height of fall."""
+        scene, has_pulley = self.scene, self.scene.M is not None or self.scene.I is not None
+        values = {"gravity": scene.g, "drop": scene.motion.drop, "axle": scene.axle}
+        values |= {"rim_mass": Decisions(scene).rim_mass} if has_pulley else {}
+        return {x: float(value) for x, value in values.items() if value is not None}
+
+
+class Fitted(NamedTuple):
+    """The fit of the runs that are ``used``: ``values`` of all quantities, of which ``names`` are fitted.
+
+    ``line`` is the linear fit of the measurements at these values. Something can be expected of all runs that
+    are ``shown``; the others of these are left out. ``outliers`` are runs, with a message on each, and
+    ``causes`` messages on what may be wrong in all runs.
+    """
+
+    runs: Runs
+    used: Selection
+    shown: Selection
+    given: Conditions
+    names: Sequence[str]
+    data: Data
+    values: Mapping[str, float]
+    line: Line
+    results: Mapping[str, Result] = {}
+    outliers: Sequence[tuple[int, str]] = ()
+    causes: Sequence[str] = ()
+
+
+def best_fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Fitted:
+    """Return the fit with the likelier scatter between runs. Raises CannotSeparate.
+
+    Where repeats, or stated uncertainties, show the scatter of times, that between runs is one of times or of
+    forces: with the greater restricted likelihood, or of times if both are as likely. A fit whose axle would
+    hold a run that moved loses.
+    """
+    data, fits = as_data(runs, used), list[Fitted]()
+    either: tuple[Varying, ...] = ("time", "force") if data.varying == "time" else (data.varying,)
+    for varying in either:
+        with suppress(CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
+            shaped = data._replace(varying=varying)
+            fits.append(
+                Fitted(runs, used, used, given, names, shaped, *estimate(shaped, given.values, names))
+            )
+    if not fits:
+        raise CannotSeparate
+    ranks = [(moves(fit.data, fit.values).all(), round(fit.line.likelihood, 6)) for fit in fits]
+    return fits[ranks.index(max(ranks))]

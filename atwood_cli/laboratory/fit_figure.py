@@ -7,8 +7,7 @@ import numpy as np
 from ..output.figure import BLUE, FAINT, INK, RED, saved, typeset, write_beside
 from ..output.forms import Picture
 from ..solver import physics
-from .estimate import accelerations, as_data
-from .fitting import Fitted
+from .estimate import Fitted, accelerations, as_data
 from .report import conditions, verdict
 from .results import equation
 
@@ -28,7 +27,7 @@ def save(fit: Fitted, picture: Picture) -> None:
     residual = fit.line.y / fit.line.sigma
     captions = {
         "Error bars are standard uncertainties.": True,
-        "They include a scatter of forces between runs.": fit.line.between > 0,
+        "They include the scatter between runs.": fit.line.between > 0,
         "Points are numbered as rows.": True,
         "Outliers are ringed.": bool(fit.outliers),
         "Hollow points are left out.": not used.all(),

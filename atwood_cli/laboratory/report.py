@@ -17,8 +17,8 @@ from ..output.text import aligned, cell
 from ..solver.answers import Answers
 from ..solver.scene import parameter_of
 from .columns import MEASURED
-from .estimate import ROUNDING, as_data, expected
-from .fitting import RARE, SELDOM, Fitted
+from .diagnosis import RARE, SELDOM
+from .estimate import ROUNDING, Fitted, accelerations, as_data, expected, moves
 from .results import QUANTITIES, RESULTS, USUAL, Fit, cut, equation, published, rounded
 from .statistics import NORMAL_DOF
 
@@ -72,7 +72,10 @@ def _scatter(fit: Fitted) -> str:
     chi2 = f"χ² = {rounded(fit.line.chi2, 3)}, {counted(fit.line.dof, 'degree')} of freedom"
     by = f"{source} ({chi2}, {probability}{test})"
     if p_value < SELDOM:
-        return f"The runs scatter more than their {by}: masses, friction or timing vary between them."
+        what = "times" if fit.data.varying == "time" else "forces"
+        return (
+            f"The runs scatter more than their {by}; the scatter between runs is taken as one of the {what}."
+        )
     if fit.outliers:
         return f"As there are outliers, no test says if the runs scatter more than their {by}."
     if p_value > 1 - RARE:
@@ -108,7 +111,8 @@ def notes_of(fit: Fitted, in_python: bool = False) -> tuple[list[str], list[str]
 
 def results_of(fit: Fitted, in_python: bool = False) -> Fit:
     """Return all of a fit by name, with its sentences: first the verdict and the warnings."""
-    known = bool(fit.data.scatter.any())
+    known = fit.data.varying != "value"
+    unit, of_unit = ("kg", abs(fit.values["gravity"])) if fit.data.varying == "force" else ("s", 1.0)
     return Fit(
         **{name: fit.results[name].value if name in fit.results else None for name in QUANTITIES},
         uncertainty={name: result.uncertainty for name, result in fit.results.items()},
@@ -117,7 +121,8 @@ def results_of(fit: Fitted, in_python: bool = False) -> Fit:
         chi2=fit.line.chi2 if known else None,
         dof=fit.line.dof,
         interval_dof=fit.line.t_dof if fit.line.t_dof < NORMAL_DOF else None,
-        between_runs=sqrt(fit.line.between) / abs(fit.values["gravity"]) if known and fit.line.dof else None,
+        between_runs=sqrt(fit.line.between) / of_unit if known and fit.line.dof else None,
+        between_runs_unit=unit if known and fit.line.dof else None,
         runs=_records(fit),
         notes=[*chain(*notes_of(fit, in_python))],
     )
@@ -160,11 +165,19 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
     if fit.data.stated:
         measured[fit.used] = runs.sign[fit.used] * fit.data.measured  # weighted means
     u[fit.used] = fit.line.sigma
-    moves = expected(shown._replace(drop=None), fit.values) > 0
-    ideal[fit.shown] = runs.sign[fit.shown] * np.where(moves, expected(shown, fit.values), np.nan)
+    ideal[fit.shown] = runs.sign[fit.shown] * np.where(
+        moves(shown, fit.values), expected(shown, fit.values), np.nan
+    )
     u[np.isnan(ideal)] = np.nan
     residual = (measured - ideal) / u
     columns = {**runs.given, runs.kind: measured, "u": u, "expected": ideal, "residual": residual}
+    a, u_a, ideal_a = measured, u, ideal
+    if runs.kind == "time":
+        fall = np.where(measured > fit.values["delay"], measured - fit.values["delay"], np.nan)
+        a = accelerations(shown._replace(drop=runs.given["drop"]), fall)
+        ideal_a = accelerations(shown._replace(drop=runs.given["drop"]), ideal - fit.values["delay"])
+        u_a = 2 * a * u / fall
+    columns |= {"a": a, "u_a": u_a, "expected_a": ideal_a}
     return [
         {"rows": " ".join(map(str, rows))}
         | {x: None if np.isnan(column[i]) else float(column[i]) for x, column in columns.items()}
@@ -178,8 +191,10 @@ def _print_page(page: Page, fit: Fitted, runs: Sequence[Mapping[str, Any]]) -> N
     page.say(conditions(fit))
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
-    _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, runs))
-    source = "with the scatter between runs added" if fit.data.scatter.any() else "as the residuals show it"
+    of_a = ("a (m/s²)", "expected (m/s²)") if kind == "time" else ()
+    _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads, *of_a), _rows(fit, runs))
+    sources = {"value": "as the residuals show it", "time": "with a scatter of times between runs added"}
+    source = sources.get(fit.data.varying, "with a scatter of forces between runs added")
     between = f", {source}" if fit.line.between else ""
     has_columns = fit.data.stated or fit.data.uncertain
     independent = " Uncertainties in columns count as independent from row to row." if has_columns else ""
@@ -208,5 +223,10 @@ def _rows(fit: Fitted, runs: Sequence[Mapping[str, Any]]) -> list[list[str]]:
         first, *others = run["rows"].split()
         is_range = len(others) > 1 and int(others[-1]) - int(first) == len(others)  # numbers of rows ascend
         row = f"{first}–{others[-1]}" if is_range else ",".join([first, *others])
-        rows.append([row, *masses, *numbers, last])
+        of_a = (
+            [published(run["a"], run["u_a"])[0], cut(run["expected_a"], run["u_a"])]
+            if run["u_a"]
+            else ["", ""]
+        )
+        rows.append([row, *masses, *numbers, last, *(of_a if fit.runs.kind == "time" else [])])
     return rows

@@ -37,7 +37,8 @@ RESULTS = {
     "chi2": "χ² of the runs by the uncertainties stated, or by the scatter of repeats",
     "dof": "degrees of freedom: the runs less what is fitted",
     "interval_dof": "degrees of freedom of Student's t of intervals; none is the normal distribution",
-    "between_runs": "the standard deviation between runs beyond that, as a mass",
+    "between_runs": "the standard deviation between runs beyond that, of times, or of forces as masses",
+    "between_runs_unit": "the unit of between_runs, s or kg",
     "runs": "each run, with what is expected of it",
 }
 
@@ -84,8 +85,9 @@ class Fit(NamedTuple):
     ``uncertainty`` and ``interval`` have the standard uncertainty of a result and both ends of its interval
     of 95 %. ``correlation`` is that of the two results that have most of it. ``chi2`` is χ² by the
     uncertainties stated, or by the scatter of repeats, with ``dof`` degrees of freedom; ``interval_dof`` are
-    those of Student's t of intervals (None: the normal distribution). ``between_runs`` (kg) is the standard
-    deviation between runs beyond those uncertainties. ``runs`` has a record for each run.
+    those of Student's t of intervals (None: the normal distribution). ``between_runs`` is the standard
+    deviation between runs beyond those uncertainties, of times, or of forces as masses, and has the unit
+    ``between_runs_unit``. ``runs`` has a record for each run.
     """
 
     rim_mass: float | None
@@ -101,6 +103,7 @@ class Fit(NamedTuple):
     dof: int
     interval_dof: float | None
     between_runs: float | None
+    between_runs_unit: str | None
     runs: Sequence[Mapping[str, Any]]
     notes: Sequence[str]
 

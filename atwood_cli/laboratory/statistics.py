@@ -1,12 +1,14 @@
 """The statistics of a fit, as in textbooks: weighted least squares, a variance between runs, outliers.
 
 R. C. Paule and J. Mandel, "Consensus values and weighting factors", J. Res. NBS 87 (1982) 377, estimate the
-variance between runs; B. Rosner, "Percentage points for a generalized ESD many-outlier procedure",
-Technometrics 25 (1983) 165, counts outliers that hide each other.
+variance between runs; H. D. Patterson and R. Thompson, "Recovery of inter-block information when block sizes
+are unequal", Biometrika 58 (1971) 545, have the restricted likelihood; B. Rosner, "Percentage points for a
+generalized ESD many-outlier procedure", Technometrics 25 (1983) 165, counts outliers that hide each other.
 """
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -66,9 +68,21 @@ class Line(NamedTuple):
         return [*map(float, np.sqrt(self.covariance.diagonal()))]
 
     @property
+    def likelihood(self) -> float:
+        """Return the logarithm of the restricted likelihood, but for a constant."""
+        rest = (self.y - self.J @ self.coefficients) / self.sigma
+        volume = float(np.linalg.slogdet(self.covariance)[1])
+        return (volume - sum_of_squares(rest)) / 2 - float(np.log(self.sigma).sum())
+
+    @property
     def times(self) -> float:
         """Return how many standard uncertainties half an interval of 95 % has."""
         return float(stdtrit(self.t_dof, 0.975))
+
+    def part(self, kept: Selection) -> "Line":
+        """Return the line of the values that are ``kept``. Raises CannotSeparate."""
+        J, y, known, scale = (column[kept] for column in self[:4])
+        return fit_line(J, y, known, scale, self.known_dof)
 
 
 def fit_line(J: Any, y: Column, known: Column, scale: Column, known_dof: float = NORMAL_DOF) -> Line:
@@ -139,7 +153,7 @@ def distances_from(line: Line, kept: Selection) -> tuple[Column, Any]:
     The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite.
     """
     J, y, known, scale = line[:4]
-    others = fit_line(J[kept], y[kept], known[kept], scale[kept], line.known_dof)
+    others = line.part(kept)
     between = others.between * scale
     of_line = np.einsum("ij,jk,ik->i", J, others.covariance, J)
     own = known + between
@@ -167,3 +181,23 @@ def judge_of_repeats(values: Column, u: Column, run: Places, step: float) -> Jud
         return np.where((others > 0) & (spread > 0), away / np.sqrt(spread), 0), dof
 
     return judge
+
+
+def spread_of_columns(y: Column, block: Places, column: Places, rounding: float) -> tuple[float, float]:
+    """Return the p value of columns that differ as a whole within blocks, by an F test, and their range.
+
+    The range is in standard deviations of the rest, whose variance is at least that of ``rounding``.
+    """
+
+    def within(x: Column) -> Column:
+        return x - (np.bincount(block, x) / np.maximum(np.bincount(block), 1))[block]
+
+    rest = within(y)
+    X = np.stack([within((column == kind).astype(float)) for kind in np.unique(column)], 1)
+    effects, _, rank, _ = np.linalg.lstsq(X.T @ X, X.T @ rest, rcond=None)
+    left, dof = sum_of_squares(rest - X @ effects), len(y) - len({*block}) - int(rank)
+    if dof < 1 or not rank:
+        return 1.0, 0.0
+    variance = max(left / dof, rounding)
+    p_value = fdtrc(rank, dof, (sum_of_squares(rest) - left) / int(rank) / variance)
+    return float(p_value), float(np.ptp(effects)) / sqrt(variance)

@@ -15,7 +15,8 @@ import numpy as np
 from scipy import optimize
 
 from atwood_cli.laboratory.columns import Kind
-from atwood_cli.laboratory.fitting import Conditions, Fitted, conditions_of, fitted
+from atwood_cli.laboratory.estimate import Conditions, Fitted
+from atwood_cli.laboratory.fitting import conditions_of, fitted
 from atwood_cli.laboratory.results import USUAL
 from atwood_cli.laboratory.runs import Runs
 from atwood_cli.laboratory.statistics import CannotSeparate
@@ -35,7 +36,9 @@ class Design(NamedTuple):
     ``u`` is that of a single time (s) or acceleration (m/s²), or of a time as a share of it if ``relative``; ``masses``
     that of each mass (kg), ``axle`` that of the axle's friction from run to run, a share; ``stated`` the uncertainties
     that the table states, times this. A part of ``u`` is ``common`` to all runs. Times are read to the ``step`` and too
-    long by the ``delay`` (s). The model is wrong by a ``string`` (kg/m), or by friction in proportion to the ``load``.
+    long by the ``delay`` (s). Times of runs scatter by ``between`` (s, the root of the mean square), by errors ``of`` the
+    time, of it as a share, of the acceleration or of the force. The model is wrong by a ``string`` (kg/m), or by friction
+    in proportion to the ``load``.
     """
 
     runs: int
@@ -52,6 +55,8 @@ class Design(NamedTuple):
     string: float = 0.0
     load: bool = False
     common: float = 0.0
+    between: float = 0.0
+    of: str = "time"
 
     def __str__(self) -> str:
         """What differs from the usual."""
@@ -84,6 +89,14 @@ STATED = [
     *(Design(n, 3, 0.05, "vary", stated=1.0) for n in (3, 5, 8, 12)),
 ]
 """Stated uncertainties: right, too small, too large, mostly common to all runs; with repeats."""
+SCATTER = {
+    of: [
+        Design(runs, repeats, 0.02, sums, of=of, between=0.03 if of != "nothing" else 0.0)
+        for runs, repeats, sums in ((4, 5, "vary"), (5, 4, "vary"), (6, 3, "constant"), (8, 3, "vary"))
+    ]
+    for of in ("nothing", "time", "share", "acceleration", "force")
+}
+"""What may differ between runs, and the designs that show it."""
 CAUSES: dict[str, tuple[dict[str, str], Sequence[str], float, str, dict[str, int]]] = {
     "nothing": ({}, USUAL, 0.0, "none", {"both": 0, "vary": 0}),
     "M 50 % low": ({"M": "28g"}, ["axle"], 0.0, "rim_mass is", {"both": 92, "vary": 83}),
@@ -194,6 +207,14 @@ def masses_of(design: Design) -> tuple[Any, Any, Any]:
     return (total - difference) / 2, (total + difference) / 2, drop
 
 
+def between_runs(design: Design, l: Any, h: Any, drop: Any) -> Any:
+    """The standard deviation of each run's time, beyond that of its repeats."""
+    t = expected("time", l, h, C, F, drop=drop)
+    by_a = t**3 / drop
+    sizes = {"share": t, "acceleration": by_a, "force": by_a / (l + h + C)}.get(design.of, np.ones_like(t))
+    return design.between * sizes / np.sqrt(np.mean(sizes**2))
+
+
 def drawn(design: Design, random: Random) -> Set:
     """A set of runs with errors, without outliers."""
     n = design.runs
@@ -213,6 +234,8 @@ def drawn(design: Design, random: Random) -> Set:
     noise = np.sqrt(design.u**2 - design.common**2) * random.standard_normal((n, design.repeats))
     if design.common:
         noise += design.common * random.standard_normal()
+    if design.between:
+        noise += (between_runs(design, l, h, drop) * random.standard_normal(n))[:, None]
     values = (ideal * (1 + noise) if design.relative else ideal + noise) + design.delay
     return Set(design, l, h, drop, np.round(values / design.step) * design.step if design.step else values)
 
@@ -228,7 +251,7 @@ def ideal_widths(design: Design, *more: str) -> Any:
 
     single = design.u * expected(design.kind, **x, drop=drop) if design.relative else design.u
     masses = (slope("l") ** 2 + slope("h") ** 2) * design.masses**2
-    read = single**2 / design.repeats + design.step**2 / 12
+    read = single**2 / design.repeats + design.step**2 / 12 + between_runs(design, l, h, drop) ** 2
     sigma = np.sqrt(read + masses + (slope("f") * design.axle * F) ** 2)
     J = np.stack([slope("c"), slope("f"), *(np.ones_like(l) for _ in more)], 1) / sigma[:, None]
     return 1.96 * np.sqrt(np.diag(np.linalg.inv(J.T @ J)))
@@ -265,6 +288,14 @@ def counts(design: Design, sets: int, *more: str, seed: int = 1) -> Counts:
         widths.append((ends[:, 1] - ends[:, 0]) / 2 / ideal)
     median, wide = np.quantile(widths, (0.5, 0.9), 0)
     return Counts(100 * np.mean(within, 0), median, wide, 100 - 100 * len(within) / sets, *100 * said / sets)
+
+
+def of_all(some: Sequence[Counts]) -> str:
+    """The mean and the lowest coverage (%), the mean width, and the share of sets in which outliers are named."""
+    held, width, accused = (
+        np.array([getattr(one, x) for one in some]) for x in ("within", "width", "accused")
+    )
+    return f"{held.mean():.0f} ({held.min():.0f}), {width.mean():.2f}, outliers {accused.mean():.0f}"
 
 
 def exchanged(time: float) -> float:
@@ -340,6 +371,8 @@ def report(sets: int) -> Iterator[str]:
         median, wide = ("/".join(f"{width:.2f}" for width in some) for some in (one.width, one.wide))
         rest = f"{one.refused:5.1f} {one.accused:9.1f} {one.scatters:9.1f} {one.delayed:9.1f}"
         yield f"{f'{design}{more or str()}':54} {held:9} {median:10} {wide:10} {rest}"
+    for of, designs in SCATTER.items():
+        yield f"{of} differs between runs: {of_all([counts(design, sets) for design in designs])}"
     for runs, repeats in ((8, 1), (8, 3), (5, 3), (15, 3)):
         design, cases = Design(runs, repeats, 0.05, step=0.01), product(("time", "mass"), (1, 2))
         found = (f"{case[1]} {case[0]}: {blunders_named(design, *case, sets):.2f}" for case in cases)

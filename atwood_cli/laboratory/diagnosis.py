@@ -1,0 +1,334 @@
+"""What contradicts a fit: measurements, columns, runs, or what is wrong in all runs alike."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from math import inf
+from typing import Any
+
+import numpy as np
+from scipy.special import fdtrc
+
+from ..numbers.digits import format_number
+from ..numbers.text import shortened
+from ..solver import physics
+from ..solver.scene import parameter_of
+from .estimate import (
+    TINY,
+    Conditions,
+    Fitted,
+    accelerations,
+    as_data,
+    best_fit,
+    estimate,
+    expected,
+    line_of,
+    moves,
+    of_forces,
+    of_measured,
+    separates,
+)
+from .results import FITTED, QUANTITIES, equation, published, rounded
+from .runs import Places, Runs, Selection, in_words
+from .statistics import CannotSeparate, Line, distances_from, judge_of_repeats, outliers, spread_of_columns
+
+OUTLIER_LEVEL = 0.012
+"""The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
+FEW_REPEATS = 3
+"""With fewer degrees of freedom repeats do not judge each other."""
+SELDOM = 0.05
+"""The p value below which runs are said to scatter more than their repeats."""
+RARE = 0.01
+"""The p value below which a cause is reported, and above 1 less which runs scatter less than repeats."""
+NEAR_BEST = 4.0
+"""Explanations are as good as the best if their χ² is not this many times the variance above it."""
+WIDE_SPREAD = 3.0
+"""Columns of repeats that differ as a whole do so by this many standard deviations, or more."""
+PLAUSIBLE = {"gravity": (5.0, 15.0), "of a height": (3.0, 25.0)}
+"""The least and the most gravity (m/s²) that may be a cause, or stand for a height that is given."""
+PLAUSIBLE_DELAY = -0.2, 0.5
+"""The least and the most delay that may be a cause, in shares of the shortest time."""
+WIDE_DELAY = 0.1
+"""The half width of a delay's interval (s) from which the runs cannot show it."""
+LEAST_SHARE, MOST_SHARE = 1e-4, 2.0
+"""An acceleration outside these shares of that without a pulley and friction must be a mistake."""
+MEASURED_A = {"a": "a", "time": "a = 2 drop/t²"}
+"""How a measured acceleration is known, by what was measured."""
+CHECK = "check masses, heights, measurements, their units and signs"
+
+
+def diagnosed(fit: Fitted, is_mixed: bool) -> Fitted:
+    """Return a fit with its outliers, and with the causes that may be wrong in all runs.
+
+    Cells are judged by their repeats first; those that are found are left out before the rest. Then, unless
+    runs are of several pulleys, rows and quantities that are freed are judged, and rows count if they explain
+    the runs as well as the best quantity.
+    """
+    cells, rows, clean, line = _far(fit)
+    if is_mixed:
+        return fit._replace(outliers=_named(fit.runs, cells))
+    freed = [*_freed(clean)]
+    causes = _repairs(clean, freed)
+    if causes and line.chi2 >= _as_good(causes[0].line):
+        rows = {}
+    outliers = _named(fit.runs, cells | rows)
+    words = _in_words(causes) or (_unseen_delay(clean, freed) if not outliers else "")
+    also = ", which may explain outliers, too" if causes and rows else ""
+    return fit._replace(outliers=outliers, causes=[f"{words}{also}"] if words else [])
+
+
+def contradiction(fit: Fitted) -> str:
+    """Say why no pulley explains a fit: outliers, runs that are held, causes, or what to check."""
+    cells, rows, *_ = _far(fit)
+    with suppress(CannotSeparate):
+        if (cells or rows) and _is_sound(_without(fit, cells | rows)):
+            return "; ".join(message for _, message in _named(fit.runs, cells | rows))
+    held = np.flatnonzero(fit.used)[~moves(fit.data, fit.values)].tolist()
+    if held:
+        return f"{fit.runs.rows_in_words(*held)} would not move, as the fitted axle holds that; {CHECK}"
+    causes = _in_words(_repairs(fit, [*_freed(fit)]))
+    return causes or impossible(fit.runs, fit.used, fit.given, fit.names) or CHECK
+
+
+# What may be wrong in all runs
+
+
+def _freed(fit: Fitted) -> Iterator[Fitted]:
+    """Yield the fits of one more quantity, the last of their names, where the runs determine it, too."""
+    for name in (x for x in FITTED if x not in fit.names and (x != "delay" or fit.runs.kind == "time")):
+        names, known = [*fit.names, name], {x: fit.given.values[x] for x in fit.given.values if x != name}
+        if fit.line.dof > 1 and separates(fit.data, fit.given.values, names):
+            with suppress(CannotSeparate, ZeroDivisionError):
+                values, line = estimate(fit.data, known, names, fit.values)
+                yield fit._replace(names=names, values=values, line=line)
+
+
+def is_negative(name: str, value: float, u: float, line: Line | None = None) -> bool:
+    """Decide if a value is below 0 by more than 2 u, and more than chance explains by a ``line``."""
+    return name != "delay" and value + max(2.0, line.times if line else 0.0) * u < 0
+
+
+def _is_plausible(freed: Fitted) -> bool:
+    """Decide if what must be above 0 may be, and if a freed quantity is of a size that it may have."""
+    name, shortest = freed.names[-1], float(freed.data.measured.min())
+    of_gravity = PLAUSIBLE["of a height" if "drop" in freed.given.inputs else "gravity"]
+    sizes = {"gravity": of_gravity, "delay": (PLAUSIBLE_DELAY[0] * shortest, PLAUSIBLE_DELAY[1] * shortest)}
+    low, high = sizes.get(name, (-inf, inf))
+    pairs = zip(freed.names, freed.line.u, strict=True)
+    return low < freed.values[name] < high and not any(is_negative(x, freed.values[x], u) for x, u in pairs)
+
+
+def _variance(line: Line) -> tuple[float, float]:
+    """Return the variance in units of the known one, and its degrees of freedom.
+
+    The known variance counts in it unless runs scatter more than that.
+    """
+    extra = line.known_dof if (line.p_value or 0) >= SELDOM else 0.0
+    return max((line.chi2 + extra) / (line.dof + extra), TINY), line.dof + extra
+
+
+def _as_good(best: Line) -> float:
+    """Return the χ² below which an explanation is as good as the best."""
+    return best.chi2 + NEAR_BEST * _variance(best)[0]
+
+
+def _repairs(fit: Fitted, freed: Sequence[Fitted]) -> list[Fitted]:
+    """Return the freed quantities that repair a fit, the best first.
+
+    An F test judges what the best takes off χ². With it are all that are as good. An inertia that is given
+    without an uncertainty is repaired, too, if the interval of 95 % excludes it.
+    """
+    changes = {one.names[-1]: abs(one.values[one.names[-1]] - fit.values[one.names[-1]]) for one in freed}
+    causes = [one for one in freed if changes[one.names[-1]] > one.line.u[-1] and _is_plausible(one)]
+    if not causes:
+        return []
+    causes.sort(key=lambda cause: cause.line.chi2)
+    best = causes[0].line
+    scale, dof = _variance(best)
+    if fdtrc(1, dof, max(fit.line.chi2 - best.chi2, 0) / scale) * len(causes) < RARE:
+        return [cause for cause in causes if cause.line.chi2 < _as_good(best)]
+    is_certain = "rim_mass" in fit.given.values and not any(fit.given.inputs[x].uncertainty for x in "MIR")
+    measured = (one for one in causes if one.names[-1] == "rim_mass" and is_certain)
+    return [one for one in measured if changes["rim_mass"] > one.line.times * one.line.u[-1]]
+
+
+def _in_words(causes: Sequence[Fitted]) -> str:
+    which = "; they cannot tell which" if len(causes) > 1 else ""
+    return f"the runs fit better if {', or '.join(map(_cause, causes))}{which}" if causes else ""
+
+
+def _cause(freed: Fitted) -> str:
+    """Say what a freed quantity would be, and how to fit it."""
+    name, given = freed.names[-1], freed.given
+    value, u = freed.values[name], freed.line.u[-1]
+    if name == "delay":
+        words = f"all times are {published(abs(value), u)[0]} s too {'long' if value > 0 else 'short'}"
+    else:
+        what = f"{name} (or the height of fall)" if name == "gravity" and "drop" in given.inputs else name
+        unit, instead = QUANTITIES[name].unit, rounded(given.values.get(name, 0.0), 3)
+        words = f"{what} is {published(value, u)[0]} {unit}, not {instead}"
+    typed = [x for x in QUANTITIES[name].given_by if given.inputs[x].given is not None]
+    without = f"without `--{typed[0]}`: " if typed else ""
+    return f"{words} ({without}`--find {','.join(freed.names)}`)"
+
+
+def _unseen_delay(fit: Fitted, freed: Sequence[Fitted]) -> str:
+    """Say that runs cannot show a delay of all times, or ""."""
+    if fit.runs.kind != "time" or "delay" in fit.names:
+        return ""
+    late = "the runs cannot show whether all times are too long by a delay"
+    for one in freed:
+        if one.names[-1] == "delay":
+            u, find = one.line.u[-1], ",".join(one.names)
+            if one.line.times * u <= WIDE_DELAY:
+                return ""
+            gives = f" (`--find {find}` gives {published(one.values['delay'], u)[0]} s)"
+            late += gives if _is_plausible(one) else ""
+    wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
+    return f"{late}; the results assume none. {wider}"
+
+
+# Outliers
+
+
+Distances = dict[int, float]
+"""Outliers by their places, or by runs: how many standard deviations each is from what the others give."""
+
+
+def _far(fit: Fitted) -> tuple[Distances, Distances, Fitted, Line]:
+    """Return outliers among repeats, those among rows, the fit without the first, and the line without both.
+
+    Few repeats are judged as runs of their own.
+    """
+    runs, run_of, cells, clean = fit.runs, fit.runs.run, Distances(), fit
+    places = np.flatnonzero((fit.used & (np.bincount(run_of) > 1))[run_of])
+    free = len(places) - len({*run_of[places]})
+    with suppress(CannotSeparate):
+        if 0 < free < FEW_REPEATS and not fit.data.stated:
+            given, u = ({x: column[run_of] for x, column in some.items()} for some in (runs.given, runs.u))
+            single = runs._replace(
+                given=given, u=u, left_out=runs.left_out[run_of], run=np.arange(len(run_of))
+            )
+            clean = best_fit(single, fit.used[run_of], fit.given, fit.names)
+        elif cells := _far_repeats(fit, places, free):
+            clean = _without(fit, cells)
+    far, line = _far_runs(clean)
+    judged = run_of if len(clean.used) == len(fit.used) else np.arange(len(run_of))
+    rows = {int(i): distance for run, distance in far.items() for i in np.flatnonzero(judged == run)}
+    return cells, rows, clean, line
+
+
+def _without(fit: Fitted, far: Distances) -> Fitted:
+    """Return the fit without the measurements at these places. Raises CannotSeparate."""
+    old, kept = fit.runs, np.delete(np.arange(len(fit.runs.values)), [*far])
+    runs = old._replace(values=old.values[kept], u_values=old.u_values[kept], run=old.run[kept])
+    used = fit.used & (np.bincount(runs.run, minlength=len(fit.used)) > 0)
+    return best_fit(runs._replace(cells=[old.cells[i] for i in kept.tolist()]), used, fit.given, fit.names)
+
+
+def _named(runs: Runs, far: Distances) -> list[tuple[int, str]]:
+    """Return outliers as runs with a message on each; what is wrong with a run or a row is named once."""
+    messages = dict[str, tuple[int, str]]()
+    for place, distance in far.items():
+        run, cell = int(runs.run[place]), runs.cells[place]
+        of_run, row = np.flatnonzero(runs.run == run).tolist(), cell.split(":")[0]
+        where: Sequence[int | str] = runs.rows[run]
+        if not all(i in far for i in of_run):
+            is_whole = all(i in far for i in of_run if runs.cells[i].startswith(f"{row}:"))
+            where = [row if is_whole else cell]
+        unit = parameter_of(runs.kind).unit
+        value = f" = {format_number(float(runs.values[place]))} {unit}" if where == [cell] else ""
+        what = f"{in_words(*where)}{value} {'is' if len(where) == 1 else 'are'}"
+        left_out = ",".join(map(str, where))
+        why = f"{rounded(abs(distance))} standard deviations from what the others give"
+        way = f"if it is a mistake, leave it out: `--without {left_out}`"
+        messages.setdefault(left_out, (run, f"{what} {why}; {way}"))
+    return [*messages.values()]
+
+
+def _far_repeats(fit: Fitted, places: Places, free: int) -> Distances:
+    """Return the outliers among repeats, at these ``places``."""
+    # Of two repeats, which are equally far from each other, that far from the line comes first.
+    runs = fit.runs
+    ideal = expected(fit.data, fit.values)[(np.cumsum(fit.used) - 1)[runs.run[places]]]
+    away = (runs.sign[runs.run] * runs.values)[places] - ideal
+    places = places[np.argsort(-np.abs(away), kind="stable")]
+    u = runs.u_values[places] if fit.data.stated else np.ones(len(places))
+    judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
+    return outliers(judge, places, free, OUTLIER_LEVEL)
+
+
+def _far_runs(fit: Fitted) -> tuple[Distances, Line]:
+    """Return the outliers among runs, and the line without them.
+
+    They are judged by the line of forces, which outliers bend least. That is no line in a delay: if one is
+    fitted, runs are judged by the least squares of the times of the others.
+    """
+    usable, data, names = np.flatnonzero(fit.used), fit.data, fit.names
+    values = {**fit.values, "rim_mass": max(fit.values["rim_mass"], 0.0)}
+    given = {x: value for x, value in values.items() if x not in names}
+
+    def line_by(some: Selection) -> Line:
+        if "delay" not in names:
+            return line_of(of_forces, data, values, names)
+        others = as_data(fit.runs, np.isin(np.arange(len(fit.used)), usable[some]))
+        best, _ = estimate(others._replace(varying=data.varying), given, names, values)
+        return line_of(of_measured, data, best, names)
+
+    def judge(some: Selection) -> tuple[Any, Any]:
+        return distances_from(line_by(some), some)
+
+    far = outliers(judge, usable, len(usable) - len(names), OUTLIER_LEVEL)
+    kept = ~np.isin(usable, [*far])
+    return far, line_by(kept).part(kept) if far else fit.line
+
+
+def columns_in_doubt(runs: Runs, used: Selection) -> list[str]:
+    """Say which columns of repeats differ from others as a whole, as those of another pulley or load do.
+
+    Logarithms are compared, as another pulley or load changes times, or accelerations, by a share.
+    """
+    values = runs.sign[runs.run] * runs.values
+    places = np.flatnonzero(used[runs.run] & (values > 0))
+    names, column = np.unique([runs.cells[i].split(":")[1] for i in places.tolist()], return_inverse=True)
+
+    if len(names) < 2:
+        return []
+    rounding = float(np.mean((runs.step / values[places]) ** 2)) / 12
+    p_value, spread = spread_of_columns(np.log(values[places]), runs.run[places], column, rounding)
+    words = f"columns {shortened(', '.join(names))} differ as a whole: are they of one pulley and one load?"
+    return [words] if p_value < RARE and spread > WIDE_SPREAD else []
+
+
+# Runs that no pulley has
+
+
+def _is_sound(fit: Fitted) -> bool:
+    """Decide if a pulley explains a fit, and more runs than are needed support it."""
+    is_negative_ = (
+        is_negative(x, fit.values[x], u, fit.line) for x, u in zip(fit.names, fit.line.u, strict=True)
+    )
+    return fit.line.dof > 0 and not any(is_negative_) and bool(moves(fit.data, fit.values).all())
+
+
+def impossible(
+    runs: Runs, used: Selection, given: Conditions, names: Sequence[str], most: float = 1.0
+) -> str:
+    """Say which accelerations are far below, or above ``most`` times, that of free masses; or ""."""
+    if "gravity" in names or "delay" in names:
+        return ""
+    data = as_data(runs, used)
+    free: Any = physics.acceleration(data.h - data.l, data.h + data.l, given.values["gravity"])
+    a = accelerations(data, data.measured)
+    places = np.flatnonzero(used)[(a / free < LEAST_SHARE) | (a / free > most)]
+    if not len(places):
+        return ""
+    i, others, gives = int(np.searchsorted(np.flatnonzero(used), places[0])), used.copy(), ""
+    others[places] = False
+    with suppress(CannotSeparate):
+        if others.any() and _is_sound(rest := best_fit(runs, others, given, names)):
+            results = zip(names, rest.line.u, strict=True)
+            gives = f"; the others give {', '.join(equation(x, rest.values[x], u) for x, u in results)}"
+    value, times, usual = (rounded(float(x), 3) for x in (a[i], a[i] / free[i], free[i]))
+    far = f"{value} m/s² is {times} times the acceleration without friction and pulley, {usual} m/s²"
+    too = f"; see {shortened(runs.rows_in_words(*places[1:]))}, too" if len(places) > 1 else ""
+    return f"{runs.rows_in_words(places[0])}: {MEASURED_A[runs.kind]} = {far}{too}{gives}; {CHECK}"
