@@ -15,6 +15,8 @@ EMPTY = ("", "NA", "NULL", "null")
 """The texts of cells without a number: R and databases write a word."""
 OWN_UNIT = re.compile(r"(?![eE][+-]?\d)[^\W\d_]|[°:]")
 """The sign that a cell has a unit: a letter that is not an exponent's, or the colon of minutes."""
+SHOWN_AS = " shown as "
+"""Stands between the number of a cell of a workbook and the way it is shown, if this cannot be understood."""
 PART_THOUSANDS = r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$"
 
 
@@ -36,6 +38,9 @@ def has_unit(cell: object) -> bool:
 
 def pointed(name: str, cell: str, comma: bool) -> str:
     """Return a cell with a decimal point, without blanks around it. Raises SceneError."""
+    number, is_shown, way = cell.partition(SHOWN_AS)
+    if is_shown:
+        raise SceneError(name, number, f"is shown as {in_quotes(way)}; write the unit in the heading")
     if comma and "." in cell:
         raise SceneError(name, cell, "has a point in a table of decimal commas; write all alike")
     return (cell.replace(",", ".") if comma else cell).strip()

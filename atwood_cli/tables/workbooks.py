@@ -1,41 +1,57 @@
-"""Workbooks, .xlsx and .ods: a sheet as rows of texts, with numbers as they are shown in full.
+"""Workbooks, .xlsx and .ods: a sheet as rows of texts, with numbers as they are shown, in full.
 
 Nothing in a workbook is run. A formula has the value that was stored with it, or else stands as a text, which
-is an error of its cell where a number is read, as dates are. A cell merged over rows counts in each of them.
+is an error of its cell where a number is read. So are a date, and a number in a format that is not wholly
+understood. A cell merged over rows counts in each of them.
 """
 
 import csv
 import re
-import zlib
-from collections.abc import Callable
-from contextlib import ExitStack, suppress
-from functools import partial
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack
+from functools import lru_cache
 from io import BytesIO, StringIO
-from typing import IO
-from xml.etree.ElementTree import Element, ParseError, fromstring
-from zipfile import BadZipFile, ZipFile
+from itertools import chain
+from posixpath import dirname
+from string import digits
+from typing import IO, NamedTuple
+from zipfile import ZipFile
 
-from ..numbers.text import in_quotes
+from ..numbers.text import counted, in_quotes, shortened
 from ..solver.scene import SceneError
-from .sources import BLOCK_BYTES, WORKBOOKS, Unreadable, opened
+from .formats import BUILT_IN, DATE, FIRST_OWN, GENERAL, agreed, duration, shown_number, shown_text
+from .packages import DAMAGE, MOST_BYTES, MOST_CELLS, TOO_MUCH_TEXT, UNFIT, Package, resolved
+from .sources import WORKBOOKS, Unreadable, opened
 
-MOST_BYTES = 64 << 20
-"""The most bytes of a workbook, or a table of runs, unpacked: a laboratory has thousands of rows."""
-MOST_CELLS = 4 << 20
-"""The most cells of a sheet, empty ones included: few bytes can stand for very many."""
+MOST_ROWS, MOST_COLUMNS = 1 << 20, 1 << 14
+"""The size of a sheet in Excel and in LibreOffice."""
+LONGEST_LIST = 500
+"""The most characters of a message that name sheets."""
 TOO_MANY = f"it has more than {MOST_CELLS >> 20} million cells"
-DAY = 86_400  # seconds
-DAMAGE = (BadZipFile, LookupError, ParseError, ValueError, zlib.error, EOFError, OSError, RuntimeError)
-"""What is raised for a part that is lacking, damaged, or has a password."""
-FORMATS = {9: "%", 10: "%"} | dict.fromkeys((*range(14, 23), *range(27, 37), 45, 46, 47, *range(50, 59)), "h")
-"""The formats of percent, and of dates and times, that every .xlsx has, by their numbers."""
+TRUE = ("1", "true")
+VISIBLE = "visible"
+CELLS = ("table-cell", "covered-table-cell")
+WITHOUT_TEXT = {"float": GENERAL, "percentage": "0%", "currency": "General¤"}
+"""The formats of numbers in .ods that have no text, by their types; that of money is not understood."""
+_ESCAPED = re.compile("_x(000[9AaDd]|00[2-7][0-9A-Fa-f])_")
+"""A tab, a line break, or a sign of ASCII in the texts of .xlsx."""
 
-Place = tuple[int, int]
-"""The row and the column of a cell."""
-Cells = tuple[dict[Place, str], dict[Place, int]]
-"""The texts of cells that are not empty, and of merged cells the last row, by the place of the first."""
-Sheets = dict[str, tuple[bool, Callable[[], Cells]]]
-"""Whether a sheet is hidden, and what reads it, by its name."""
+
+class Grid(NamedTuple):
+    """The texts of a sheet by row and column, and what is merged or hidden.
+
+    A merged cell has its first row and column, and its last.
+    """
+
+    rows: dict[int, dict[int, str]]
+    merged: list[tuple[int, int, int, int]]
+    hidden_rows: set[int]
+    hidden_columns: set[int]
+
+
+Book = tuple[dict[str, bool], str, Grid]
+"""Whether a sheet is hidden, by its name; the name of the sheet that is read, and what it holds."""
 
 
 def opened_table(source: str, sheet: str | None, stack: ExitStack) -> tuple[IO[bytes], list[str]]:
@@ -53,178 +69,273 @@ def opened_table(source: str, sheet: str | None, stack: ExitStack) -> tuple[IO[b
 
 
 def workbook_as_csv(file: IO[bytes], name: str | None) -> tuple[bytes, list[str]]:
-    """Return the sheet of that name, or the first that is not hidden, as CSV, and a remark if there are more.
+    """Return the sheet of that name, or the first that is not hidden, as CSV, and remarks on it.
 
     Raises Unreadable for what is no workbook, has a password, or is too large.
     """
     try:
         with ZipFile(file) as archive:
-            parts = archive.infolist()
-            if sum(part.file_size for part in parts) > MOST_BYTES:
-                raise Unreadable(f"it is larger than {MOST_BYTES >> 20} MB, unpacked")
-            sheets = (_xlsx if "xl/workbook.xml" in archive.namelist() else _ods)(partial(_part, archive))
-            hidden = {sheet: " (hidden)" if is_hidden else "" for sheet, (is_hidden, _) in sheets.items()}
-            names = ", ".join(f"{in_quotes(sheet)}{hidden[sheet]}" for sheet in sheets)
-            shown = name or next((sheet for sheet in sheets if not hidden[sheet]), next(iter(sheets), ""))
-            if shown not in sheets:
-                raise Unreadable(f"there is no sheet {in_quotes(shown)}; there are {names}")
-            cells, merged = sheets[shown][1]()
-    except DAMAGE as error:
-        why = getattr(error, "strerror", None) or str(error)
-        raise Unreadable(f"it is damaged, has a password, or is no workbook: {why}") from None
-    if not cells:
+            package = Package(archive)
+            hidden, shown, grid = (_ods if "content.xml" in package.parts else _xlsx)(package, name)
+    except DAMAGE:
+        raise Unreadable(UNFIT) from None
+    each = (in_quotes(x) + (" (hidden)" if hidden[x] else "") for x in hidden)
+    names = shortened(", ".join(each), LONGEST_LIST)
+    if shown not in hidden:
+        raise Unreadable(
+            f"there is no sheet {in_quotes(shown)}; there are {names}" if names else "it has no sheet"
+        )
+    rows = _unmerged(grid.rows, grid.merged)
+    if not rows:
         raise Unreadable(f"sheet {in_quotes(shown)} of {names} is empty")
-    rows = sorted({row for row, _ in cells})
-    columns = range(1 + max(column for _, column in cells))
-    if len(columns) * len(rows) > MOST_CELLS:
+    width = 1 + max(map(max, rows.values()))
+    if width * len(rows) > MOST_CELLS:
         raise Unreadable(TOO_MANY)
-    for first in [first for first in merged if first in cells]:
-        for row in rows:
-            if first[0] < row <= merged[first]:
-                cells.setdefault((row, first[1]), cells[first])
+    if sum(len(text) for cells in rows.values() for text in cells.values()) > MOST_BYTES:
+        raise Unreadable(TOO_MUCH_TEXT)
+    remarks = [f"sheet {in_quotes(shown)} of {names}"] if len(hidden) > 1 else []
+    columns = {column for column in grid.hidden_columns if column < width}
+    counts = {"hidden row": len(grid.hidden_rows & rows.keys()), "hidden column": len(columns)}
+    if any(counts.values()):
+        remarks.append(f"{' and '.join(counted(n, thing) for thing, n in counts.items() if n)}, too")
+    lines = ([rows[number].get(column, "") for column in range(width)] for number in sorted(rows))
+    return _as_csv(lines), remarks
+
+
+def _as_csv(rows: Iterable[list[str]]) -> bytes:
     buffer = StringIO()
-    lines = ([cells.get((row, column), "") for column in columns] for row in rows)
-    csv.writer(buffer, lineterminator="\n").writerows(lines)
-    remarks = [f"sheet {in_quotes(shown)} of {names}"] if len(sheets) > 1 else []
-    return buffer.getvalue().encode(), remarks
+    plain = csv.writer(buffer, lineterminator="\n")
+    quoted = csv.writer(buffer, lineterminator="\n", quoting=csv.QUOTE_ALL)
+    for cells in rows:
+        is_like_comment = cells[0].lstrip().startswith("#")  # an error, as #DIV/0!
+        (quoted if is_like_comment else plain).writerow(cells)
+    return buffer.getvalue().encode()
 
 
-def _part(archive: ZipFile, name: str) -> Element:
-    """Return a part of a workbook. It has no more bytes than the archive says."""
-    with archive.open(name) as part:
-        content = b"".join(iter(partial(part.read, BLOCK_BYTES), b""))
-    if b"<!DOCTYPE" in content:  # whose entities may be of any size
-        raise ValueError(f"{name} has a document type")
-    return fromstring(content)
+def _unmerged(
+    rows: Mapping[int, dict[int, str]], merged: Iterable[tuple[int, int, int, int]]
+) -> dict[int, dict[int, str]]:
+    """Return rows in which a merged cell shows the same in each row; what lies under it does not count.
+
+    A row that shows nothing else is left out. Raises Unreadable for too many merged cells.
+    """
+    shown, numbers, fillings, steps = dict(rows), sorted(rows), list[tuple[int, int, str]](), 0
+    for top, left, bottom, right in merged:
+        text = rows.get(top, {}).get(left, "")
+        for number in numbers[bisect_left(numbers, top) : bisect_right(numbers, bottom)]:
+            row, first = shown[number], left + 1 if number == top else left
+            shown[number] = {column: x for column, x in row.items() if not first <= column <= right}
+            fillings.append((number, left, text))
+            steps += 1 + len(row)
+            if steps > MOST_CELLS:
+                raise Unreadable("it has too many merged cells, or they overlap")
+    shown = {number: cells for number, cells in shown.items() if cells}
+    for number, column, text in fillings:
+        if text and number in shown:
+            shown[number][column] = text
+    return shown
 
 
-def _local(tag: str) -> str:
-    return tag.rpartition("}")[2]
-
-
-def _get(element: Element, name: str) -> str:
-    """Return an attribute by its name in any namespace, "" if it is not there."""
-    return next((value for key, value in element.items() if _local(key) == name), "")
-
-
-def _number(value: str, code: str = "") -> str:
-    """Return a number of 15 digits as its format shows it: in percent, with a unit, as a date or a time."""
-    number = float(value)
-    signs = re.sub(r'"[^"]*"|\\.|\[[^hms\]][^\]]*\]|General|Standard', "", code)
-    if re.search("[dmyhs]", signs, re.IGNORECASE):
-        if not 0 <= number < 1:
-            return f"a date, day {number:.15g}"
-        minutes, seconds = divmod(round(number * DAY, 6), 60)
-        return f"{minutes // 60:.0f}:{minutes % 60:02.0f}:{seconds:09.6f}".rstrip("0").rstrip(".")
-    if "%" in signs:
-        return f"{number * 100:.15g}%"
-    unit = re.search(r'(?:"([^"]*)"|\\(.))$', code)
-    return f"{number:.15g}{(unit[1] or unit[2] or '') if unit else ''}"
+def _chosen(hidden: Mapping[str, bool], wanted: str | None) -> str:
+    """Return the sheet that is wanted, or the first that is not hidden, or the first."""
+    return wanted or next(chain((x for x in hidden if not hidden[x]), hidden), "")
 
 
 # .xlsx
 
 
-def _xlsx(part: Callable[[str], Element]) -> Sheets:
-    targets = {_get(link, "Id"): _get(link, "Target") for link in part("xl/_rels/workbook.xml.rels")}
-    sheets = Sheets()
-    for sheet in part("xl/workbook.xml").iterfind(".//{*}sheet"):
-        target = targets[_get(sheet, "id")]
-        path = target[1:] if target.startswith("/") else f"xl/{target}"
-        is_hidden = _get(sheet, "state") not in ("", "visible")
-        sheets[_get(sheet, "name")] = is_hidden, partial(_cells_of_xlsx, part, path)
-    return sheets
+def _xlsx(package: Package, wanted: str | None) -> Book:
+    """Read the names of the sheets, and the cells of one."""
+    book = dict(package.links("").values()).get("officeDocument", "xl/workbook.xml")
+    links, hidden, paths = package.links(book), dict[str, bool](), dict[str, str]()
+    for _, name, sheet, _ in package.elements(book):
+        if name == "sheet" and links[sheet["id"]][0] in ("worksheet", ""):  # and no chart
+            hidden[sheet["name"]] = sheet.get("state", VISIBLE) != VISIBLE
+            paths[sheet["name"]] = links[sheet["id"]][1]
+    if (shown := _chosen(hidden, wanted)) not in paths:
+        return hidden, shown, Grid({}, [], set(), set())
+    if paths[shown].lower() not in package.parts:
+        raise LookupError
+    usual = {kind: resolved(dirname(book), f"{kind}.xml") for kind in ("styles", "sharedStrings")}
+    parts = usual | dict(links.values())
+    codes, texts = _codes(package, parts["styles"]), _texts(package, parts["sharedStrings"])
+    return hidden, shown, _cells_of_xlsx(package, paths[shown], codes, texts)
 
 
-def _cells_of_xlsx(part: Callable[[str], Element], path: str) -> Cells:
-    formats, texts = [""], list[str]()
-    with suppress(KeyError):  # a workbook may have neither
-        formats = _formats(part("xl/styles.xml"))
-        texts = [_text_of_xlsx(text) for text in part("xl/sharedStrings.xml").iterfind(".//{*}si")]
-    sheet, cells = part(path), dict[Place, str]()
-    for cell in sheet.iterfind(".//{*}c"):
-        value, formula = cell.findtext("{*}v", ""), cell.findtext("{*}f")
-        match _get(cell, "t"):
-            case "s":
-                value = texts[int(value)]
-            case "inlineStr":
-                value = "".join(map(_text_of_xlsx, cell.iterfind("{*}is")))
-            case "b":
-                value = "TRUE" if value == "1" else "FALSE"
-            case "" | "n" if value:
-                value = _number(value, formats[int(_get(cell, "s") or 0)])
-        if value or formula is not None:
-            cells[_place(_get(cell, "r"))] = value or f"={formula}"
-    corners = [_get(merged, "ref").split(":") for merged in sheet.iterfind(".//{*}mergeCell")]
-    return cells, {_place(first): _place(last)[0] for first, last in corners}
+def _codes(package: Package, path: str) -> list[str]:
+    """Return the format of numbers in each style of cells."""
+    own, numbers = dict[str, str](), list[str]()
+    for parent, name, style, _ in package.elements(path):
+        if name == "numFmt" and parent != "dxf":
+            own[style["numFmtId"]] = style["formatCode"] or GENERAL
+        elif name == "xf" and parent == "cellXfs":
+            numbers.append(style.get("numFmtId", "0"))
+    others = {x: GENERAL if int(x) >= FIRST_OWN else f"number {x} of Excel's formats" for x in numbers}
+    codes = others | BUILT_IN | own
+    return [codes[x] for x in numbers]
 
 
-def _text_of_xlsx(text: Element) -> str:
-    """Return a text, without the ruby characters above it."""
-    return "".join(run.text or "" for path in ("{*}t", "{*}r/{*}t") for run in text.iterfind(path))
+def _texts(package: Package, path: str) -> list[str]:
+    """Return the texts that cells share, without the ruby characters above them."""
+    texts, runs = list[str](), list[str]()
+    for parent, name, _, text in package.elements(path):
+        if name == "t" and parent in ("si", "r"):
+            runs.append(text or "")
+        elif name == "si":
+            texts.append(_unescaped("".join(runs)))
+            runs.clear()
+            if len(texts) > MOST_CELLS:
+                raise Unreadable(TOO_MANY)
+    return texts
+
+
+def _unescaped(text: str) -> str:
+    """Return a text with the characters that _x000D_ and the like stand for, and with usual line breaks."""
+    if "_x" in text:
+        text = _ESCAPED.sub(lambda m: chr(int(m[1], 16)), text)
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _cells_of_xlsx(package: Package, path: str, codes: Sequence[str], texts: Sequence[str]) -> Grid:
+    """Return the cells of a sheet. Those without a place follow the one before."""
+    grid, row, column, held, runs = Grid({}, [], set(), set()), 0, -1, dict[str, str](), list[str]()
+    for parent, name, attributes, text in package.elements(path, begins=["row"]):
+        if text is None:
+            row, column = int(attributes.get("r") or row + 1), -1
+            if attributes.get("hidden") in TRUE:
+                grid.hidden_rows.add(row)
+        elif name == "t" and parent in ("is", "r"):
+            runs.append(text)
+        elif parent == "c":
+            held[name] = text
+        elif name == "c":
+            column += 1
+            if place := attributes.get("r"):
+                row, column = _place(place)
+            if shown := _shown_in_xlsx(attributes, held, "".join(runs), codes, texts):
+                grid.rows.setdefault(row, {})[column] = shown
+            held.clear()
+            runs.clear()
+        elif name == "mergeCell":
+            first, _, last = attributes["ref"].partition(":")
+            grid.merged.append((*_place(first), *_place(last or first)))
+        elif name == "col" and attributes.get("hidden") in TRUE:
+            most = min(int(attributes["max"]), MOST_COLUMNS)
+            grid.hidden_columns.update(range(int(attributes["min"]) - 1, most))
+    return grid
 
 
 def _place(reference: str) -> tuple[int, int]:
-    """Return the row and the column of a cell: of B3 3 and 1."""
-    letters = reference.rstrip("0123456789")
+    """Return the row and the column of a cell: of B3 3 and 1. Raises ValueError."""
+    letters = reference.rstrip(digits)
+    return int(reference[len(letters) :]), _column(letters)
+
+
+@lru_cache(1024)
+def _column(letters: str) -> int:
+    if not re.fullmatch("[A-Z]{1,3}", letters):
+        raise ValueError
     column = 0
     for letter in letters:
         column = 26 * column + int(letter, 36) - 9
-    return int(reference[len(letters) :]), column - 1
+    return column - 1
 
 
-def _formats(styles: Element) -> list[str]:
-    """Return the format of numbers in each style of cells."""
-    named = {
-        _get(x, "numFmtId"): _get(x, "formatCode").split(";")[0] for x in styles.iterfind(".//{*}numFmt")
-    }
-    numbers = (_get(style, "numFmtId") or "0" for style in styles.iterfind(".//{*}cellXfs/*"))
-    return [named.get(number) or FORMATS.get(int(number), "") for number in numbers]
+def _shown_in_xlsx(
+    cell: Mapping[str, str], held: Mapping[str, str], inline: str, codes: Sequence[str], texts: Sequence[str]
+) -> str:
+    """Return what a cell shows; the formula if no value is stored with it. Raises ValueError, LookupError."""
+    kind, value = cell.get("t", "n"), held.get("v", "")
+    if not value and kind != "inlineStr" and not (kind == "str" and "v" in held):
+        return f"={held['f']}" if "f" in held else ""
+    code = codes[int(cell.get("s", 0))] if codes else GENERAL
+    match kind:
+        case "n":
+            return shown_number(value, code)
+        case "s" if value.isdecimal():
+            return shown_text(texts[int(value)], code)
+        case "str" | "inlineStr":
+            return shown_text(_unescaped(value or inline), code)
+        case "b":
+            return "TRUE" if value in TRUE else "FALSE"
+        case "d":
+            return f"{DATE}{value}"
+        case "e":
+            return value
+    raise ValueError  # there is no such kind, or text
 
 
 # .ods
 
 
-def _ods(part: Callable[[str], Element]) -> Sheets:
-    content = part("content.xml")
-    hidden = {
-        _get(style, "name")
-        for style in content.iterfind(".//{*}style")
-        if any(_get(x, "display") == "false" for x in style.iterfind("{*}table-properties"))
-    }
-    tables = content.iterfind(".//{*}table")
-    return {_get(x, "name"): (_get(x, "style-name") in hidden, partial(_cells_of_ods, x)) for x in tables}
-
-
-def _cells_of_ods(table: Element) -> Cells:
-    cells, merged, row = dict[Place, str](), dict[Place, int](), 0
-    for line in table.iterfind(".//{*}table-row"):
-        column, rows = 0, int(_get(line, "number-rows-repeated") or 1)
-        for cell in line:
-            columns = int(_get(cell, "number-columns-repeated") or 1)
-            if text := "" if _local(cell.tag) == "covered-table-cell" else _text_of_ods(cell):
-                if len(cells) + rows * columns > MOST_CELLS:
+def _ods(package: Package, wanted: str | None) -> Book:
+    """Read the names of the sheets and, in one go, the cells of one."""
+    hidden, styles, is_hidden, shown = dict[str, bool](), set[str](), False, wanted or ""
+    grid, row, column, columns, is_shown = Grid({}, [], set(), set()), 0, 0, 0, False
+    paragraphs, cells = list[str](), dict[int, str]()
+    for parent, name, attributes, text in package.elements("content.xml", begins=["table"]):
+        if text is None and parent != "dde-link":
+            sheet = attributes.get("name", "")
+            hidden[sheet] = attributes.get("style-name") in styles
+            if not shown and not hidden[sheet]:
+                shown = sheet
+            is_shown = sheet == shown
+        elif name == "table-properties":
+            is_hidden = attributes.get("display") == "false"
+        elif name == "style" and is_hidden:
+            styles.add(attributes.get("name", ""))
+            is_hidden = False
+        elif name == "table":
+            is_shown = False
+        elif name == "p" and parent in CELLS:
+            paragraphs.append(text or "")
+        elif name in CELLS:
+            last = column + _count(attributes, "columns-repeated")
+            if is_shown and name == CELLS[0] and (text := _shown_in_ods(attributes, "\n".join(paragraphs))):
+                if last > MOST_COLUMNS:
                     raise Unreadable(TOO_MANY)
-                cells |= {(row + i, column + j): text for i in range(rows) for j in range(columns)}
-                if spanned := _get(cell, "number-rows-spanned"):
-                    merged[row, column] = row + int(spanned) - 1
-            column += columns
-        row += rows
-    return cells, merged
+                cells |= dict.fromkeys(range(column, last), text)
+                bottom, right = (_count(attributes, f"{x}-spanned") - 1 for x in ("rows", "columns"))
+                if bottom or right:
+                    grid.merged.append((row, column, row + bottom, column + right))
+            column = last
+            paragraphs.clear()
+        elif is_shown and name == "table-row":
+            last = row + _count(attributes, "rows-repeated")
+            if cells and last > MOST_ROWS:
+                raise Unreadable(TOO_MANY)
+            if cells:
+                grid.rows.update(dict.fromkeys(range(row, last), cells))
+                if attributes.get("visibility", VISIBLE) != VISIBLE:
+                    grid.hidden_rows.update(range(row, last))
+            row, column, cells = last, 0, {}
+        elif is_shown and name == "table-column":
+            last = columns + _count(attributes, "columns-repeated")
+            if attributes.get("visibility", VISIBLE) != VISIBLE:
+                grid.hidden_columns.update(range(columns, min(last, MOST_COLUMNS)))
+            columns = last
+    if hidden and not shown:
+        return _ods(package, _chosen(hidden, None))
+    return hidden, shown, grid
 
 
-def _text_of_ods(cell: Element) -> str:
-    """Return what a cell holds, without its comments."""
-    shown = "\n".join("".join(line.itertext()) for line in cell.iterfind("{*}p"))
-    match _get(cell, "value-type"):
-        case "float" | "currency":
-            unit = re.search(r" ?[^\W\d_][^\d]*$", shown)
-            return _number(_get(cell, "value")) + (unit[0] if unit else "")
-        case "percentage":
-            return _number(_get(cell, "value"), "%")
+def _count(attributes: Mapping[str, str], things: str) -> int:
+    return int(attributes.get(f"number-{things}") or 1)
+
+
+def _shown_in_ods(cell: Mapping[str, str], shown: str) -> str:
+    """Return what a cell shows, a number in full; the formula if no value is stored with it."""
+    match cell.get("value-type"):
+        case "float" | "currency" | "percentage" as kind:
+            if shown.strip():
+                return agreed(cell["value"], shown.strip())
+            return shown_number(cell["value"], WITHOUT_TEXT[kind])
         case "time":
-            return ":".join(re.findall(r"[\d.,]+", _get(cell, "time-value")))  # PT00H00M03.99S
+            return duration(cell["time-value"], shown)
         case "date":
-            return f"a date, {_get(cell, 'date-value')}"
-    formula = _get(cell, "formula")
-    return shown or (f"={formula}" if formula else "")
+            return f"{DATE}{cell['date-value']}"
+        case "boolean":
+            return shown or cell["boolean-value"].upper()
+        case None if not shown and "formula" in cell:
+            return f"={cell['formula']}"
+    return shown or cell.get("string-value", "")

@@ -1,0 +1,158 @@
+"""Numbers as the cells of a workbook show them: by a number format of .xlsx, beside a text in .ods.
+
+A number has up to 15 digits, and the unit that is shown. What is not wholly understood stands behind
+`SHOWN_AS`, and is an error where a number is read: no part of a format is used while another is dropped.
+"""
+
+import re
+from contextlib import suppress
+from functools import lru_cache
+from math import inf, isfinite
+
+from ..reading.units import PERCENT, Malformed, read_number, symbol_of
+from .cells import SHOWN_AS
+
+DAY, HOUR = 86_400, 3600  # seconds
+GENERAL = "General"
+PLAIN = (GENERAL, "@")
+"""The formats that show a number, or a text, as it is."""
+BUILT_IN = {
+    **{"0": GENERAL, "49": "@", "21": "h:mm:ss", "45": "mm:ss", "46": "[h]:mm:ss", "47": "mm:ss.0"},
+    **dict.fromkeys(("1", "2", "3", "4", "11", "48"), "0") | dict.fromkeys(("9", "10"), "0%"),
+    **dict.fromkeys(("37", "38", "39", "40"), "0_);(0)"),
+    **dict.fromkeys(map(str, (*range(14, 21), 22, *range(27, 37), *range(50, 59))), "d"),
+}
+"""The formats that every .xlsx has, by their numbers, but for the digits; d is a date."""
+FIRST_OWN = 164
+DATE = "a date, "
+SECTION_OF_TEXTS = 4
+HALF = 0.5000001
+"""Half a step of the last digit, and a little for doubles."""
+
+_PADDING = r"_.|\* "
+_LITERAL = rf'"[^"]*"|\\.|\[\$[^\]-]*(?:-[^\]]*)?\]|{_PADDING}|[^\w\s"\\;\[\]#?.,%@*]| '
+"""What is shown as it stands: quoted, escaped, a currency, other signs; padding is a blank."""
+_TEXT_OF = re.compile(r'"([^"]*)"|\\(.)|\[\$([^\]-]*)[^\]]*\]|[_*].|(.)', re.DOTALL)
+_COLOUR = r"(?:\[(?i:black|blue|cyan|green|magenta|red|white|yellow|color ?\d+)\])*"
+_CLOCK = r"(?i:(?:(?:\[h+\]|hh?):mm|\[m+\]|mm?):ss(?:\.0+)?)"
+_NUMBER = r"(?i:general)|(?:[#0?]+(?:,[#0?]+)*)?(?:\.[#0?]*)?(?:[Ee][+-]0+)?"
+_SECTION = re.compile(
+    rf"{_COLOUR}((?:{_LITERAL})*)(?:({_CLOCK})|({_NUMBER}))((?:{_LITERAL})*)(%?)((?:{_LITERAL})*)",
+    re.ASCII | re.DOTALL,
+)
+_TEXT_SECTION = re.compile(rf"{_COLOUR}(?:{_PADDING})*@(?:{_PADDING})*", re.DOTALL)
+_AS_IT_STANDS = re.compile(r'"[^"]*"|\\.|\[[^\]]*\]|[_*].', re.DOTALL)
+_DIVIDED = re.compile(rf'((?:{_AS_IT_STANDS.pattern}|[^"\\\[_*;])*);', re.DOTALL)
+_CONDITION = re.compile(r"\[[<>=]")
+_SHOWN = re.compile(r"([+-]?)([0-9.,'’\s]*[0-9])[.,]?(?:[eE]([+-]?[0-9]{1,2}))?(?![0-9])(.*)", re.DOTALL)
+_BUT_DIGITS = {mark: re.compile(f"[^0-9{mark}]") for mark in ".,"}
+_COUNT = r"([0-9]+(?:\.[0-9]*)?)"
+_DURATION = re.compile(rf"(-?)P(?:{_COUNT}D)?(?:T(?:{_COUNT}H)?(?:{_COUNT}M)?(?:{_COUNT}S)?)?")
+
+Rule = tuple[str, int, str, float]
+"""How a section shows numbers: behind a sign, times a factor, with a unit; a clock up to so many seconds."""
+
+
+@lru_cache(1024)
+def _sections(code: str) -> list[str]:
+    """Return the sections of a number format, none if it cannot be divided, or has conditions."""
+    sections = _DIVIDED.findall(f"{code};")
+    return sections if ";".join(sections) == code and not _CONDITION.search(code) else []
+
+
+@lru_cache(1024)
+def _rule(section: str) -> Rule | None:
+    """Return how a section shows numbers, None if that is not wholly understood or may show nothing."""
+    if not (match := _SECTION.fullmatch(section)):
+        return None
+    before, clock, number, literals, percent, after = match.groups(default="")
+    unit = (_text_of(literals) + percent + _text_of(after)).rstrip()
+    if not is_shown_unit(unit) or (percent and unit.lstrip() != PERCENT):
+        return None
+    if clock:
+        turn = inf if "[" in clock else DAY if clock[0] in "hH" else HOUR
+        return None if unit else (_text_of(before).strip(), 1, "", turn)
+    shows_zero = "0" in re.split("[Ee][+-]", number)[0] or number.lower() == "general"
+    return (_text_of(before).strip(), 100 if percent else 1, unit, 0) if shows_zero else None
+
+
+def _text_of(literals: str) -> str:
+    return _TEXT_OF.sub(lambda m: m[1] or m[2] or m[3] or m[4] or (" " if m[0][0] in "_*" else ""), literals)
+
+
+@lru_cache(1024)
+def is_shown_unit(text: str) -> bool:
+    """Decide whether what is shown behind a number is nothing, a unit, or percent."""
+    return text.strip() in ("", PERCENT) or bool(symbol_of(text.strip()))
+
+
+def _rule_for(value: float, code: str) -> Rule | None:
+    """Return the rule by which a format shows a number, if it is understood and shows the right sign."""
+    positive, negative, zero, *_ = [*map(_rule, _sections(code)), None, None, None]
+    count = len(_sections(code))
+    if value < 0 and count > 1:
+        return negative if negative and negative[0] == "-" else None
+    rule = zero if value == 0 and count > 2 else positive
+    return rule if rule and (not rule[0] or (rule[0] == "+" and value >= 0)) else None
+
+
+def shown_number(stored: str, code: str) -> str:
+    """Return a number as its format shows it: in percent, with a unit, as a duration in seconds."""
+    value = _finite(stored)
+    if code in PLAIN:
+        return f"{value + 0.0:.15g}"
+    if rule := _rule_for(value, code):
+        _, factor, unit, turn = rule
+        if not turn:
+            return f"{value * factor + 0.0:.15g}{unit}"
+        if 0 <= (seconds := round(value * DAY, 6)) < turn:
+            return f"{seconds:.15g} s"
+    is_date = re.search("(?i)[dhmsy]", _AS_IT_STANDS.sub("", code))
+    return f"{DATE}day {value:.15g}" if is_date else f"{value:.15g}{SHOWN_AS}{code}"
+
+
+def shown_text(text: str, code: str) -> str:
+    """Return a text, with its format if that shows more than the text or less."""
+    sections = _sections(code)
+    is_plain = "@" not in code and len(sections) < SECTION_OF_TEXTS
+    if not text or is_plain or (sections and _TEXT_SECTION.fullmatch(sections[-1])):
+        return text
+    return f"{text}{SHOWN_AS}{code}"
+
+
+def agreed(value: str, shown: str) -> str:
+    """Return a number with its unit, if it is what is shown up to rounding; else as an error."""
+    number = _finite(value)
+    if shown == value:
+        return f"{number + 0.0:.15g}"
+    if not (match := _SHOWN.fullmatch(shown.replace("−", "-"))):
+        return shown or f"{number:.15g}"
+    sign, digits, power, unit = match.groups(default="")
+    for scale in ((100, 1) if unit.strip() == PERCENT else (1,)) if is_shown_unit(unit) else ():
+        for mark in ".,":
+            whole, *decimals = _BUT_DIGITS[mark].sub("", digits).split(mark)
+            shown_value = float(f"{sign}{whole}.{''.join(decimals)}e{power or 0}")
+            step = 10.0 ** (int(power or 0) - sum(map(len, decimals)))
+            if not decimals[1:] and abs(number * scale - shown_value) <= step * HALF:
+                return f"{number * scale + 0.0:.15g}{unit.rstrip()}"
+    return f"{number:.15g}{SHOWN_AS}{shown}"
+
+
+def duration(value: str, shown: str) -> str:
+    """Return a duration, as PT1H2M3.5S, in seconds, if a clock that is shown agrees with it."""
+    match, clock = _DURATION.fullmatch(value), shown.replace(",", ".")
+    with suppress(Malformed):
+        if match and any(match.groups()[1:]):
+            days, hours, minutes, seconds = (float(count or 0) for count in match.groups()[1:])
+            total = _finite(f"{match[1]}{((days * 24 + hours) * 60 + minutes) * 60 + seconds}")
+            step = 10.0 ** -len(clock.partition(".")[2])
+            if not re.search("[0-9]", clock) or abs(read_number(clock, "time").number - total) < step:
+                return f"{total:.15g} s"
+    return f"{value}{SHOWN_AS}{shown or 'a time'}"
+
+
+def _finite(value: str) -> float:
+    """Return a number that a workbook stores. Raises ValueError."""
+    if not isfinite(number := float(value)):
+        raise ValueError
+    return number
