@@ -504,3 +504,13 @@ def test_quantities_by_their_symbols_have_their_names(words: Any) -> None:
 def test_errors(arguments: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError, match="^" + message.replace("?", "[?]") + "$"):
         solve_arrays(**{"m1": 1, "m2": 3, **arguments})
+
+
+def test_masked_items_of_plain_lists_are_not_given(recwarn: pytest.WarningsRecorder) -> None:
+    """NumPy made NaN of them, with a warning."""
+    lists: Any = ([10.0, np.ma.masked], ("10", np.ma.masked), [[10.0, np.ma.masked]])
+    for M in lists:
+        got = np.ravel(solve_arrays(1, 3, M=M, mu=0.3)["acceleration"])
+        want = [solve_arrays(1, 3, M=10.0, mu=0.3), solve_arrays(1, 3, mu=0.3)]
+        assert got.tolist() == [float(one["acceleration"]) for one in want]
+    assert not recwarn.list

@@ -86,7 +86,8 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
     if is_missing(value):
         return GivenColumn(np.array(default), np.array(True))
     try:
-        array = value.data if isinstance(value, np.ma.MaskedArray) else np.asarray(value)
+        kind_of_items = object if _holds_masked(value) else None
+        array = value.data if isinstance(value, np.ma.MaskedArray) else np.asarray(value, kind_of_items)
         is_text = array.dtype.kind in "SU"  # as objects, so that an error shows 'x', not np.str_('x')
         plain = array.astype(object) if is_text else array
         absent = _absent(value, plain)
@@ -112,6 +113,11 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
             if (Decimal(exact) if isinstance(exact, str) else exact) != double:
                 raise SceneError(name, str(exact), "is beyond the range of doubles")
     return GivenColumn(doubles, absent)
+
+
+def _holds_masked(value: object) -> bool:
+    """Decide whether a list has an item that is masked, which NumPy would take for NaN, with a warning."""
+    return isinstance(value, list | tuple) and any(x is np.ma.masked or _holds_masked(x) for x in value)
 
 
 def _absent(value: Any, array: NDArray[Any]) -> NDArray[np.bool_] | None:
