@@ -108,7 +108,8 @@ def check_cells(table: tuple[str, str, int]) -> None:
     """Records of CSV come out as they went in, surplus cells joined to the last; or they are refused."""
     text, separator, piece = table
     ran = batch(text.encode(), "tsv" if separator == "\t" else "csv", piece)
-    (head, columns), *rows = rows_of(text.removeprefix(MARK), separator) or [("", [])]
+    with_line_feeds = re.sub(r"\r(?!\n)", "\n", text)  # a carriage return alone ends a line, too
+    (head, columns), *rows = rows_of(with_line_feeds.removeprefix(MARK), separator) or [("", [])]
     if not columns:
         assert ran.status == 1
         assert "cannot read" in ran.err

@@ -5,15 +5,13 @@ How a table by words of its own is read, and which are refused, stands in `cases
 
 import gzip
 import re
+from datetime import timedelta
 from fractions import Fraction
-from io import BytesIO
-from itertools import count
 from math import nan
 from pathlib import Path
 from random import Random
 from types import SimpleNamespace
 from typing import Any
-from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
 import pytest
@@ -261,82 +259,6 @@ def test_no_heading_changes_a_result_without_a_word(tmp_path: Path) -> None:
     assert same > many(2000)
 
 
-def workbook(parts: dict[str, str]) -> bytes:
-    """An archive of these parts."""
-    with ZipFile(content := BytesIO(), "w", ZIP_DEFLATED) as archive:
-        for name, part in parts.items():
-            archive.writestr(name, part)
-    return content.getvalue()
-
-
-ROOT = "<a xmlns:r='R' xmlns:table='T' xmlns:office='urn:office:1.0' xmlns:text='X' xmlns:calcext='C'>%s</a>"
-XLSX = {
-    "xl/workbook.xml": ROOT % "<sheet name='Old' state='hidden' r:id='a'/><sheet name='Lab' r:id='b'/>",
-    "xl/_rels/workbook.xml.rels": ROOT % "<x Id='a' Target='s.xml'/><x Id='b' Target='/xl/t.xml'/>",
-    "xl/styles.xml": ROOT % """<numFmt numFmtId='170' formatCode='0.0" g"'/><cellXfs><xf numFmtId='0'/><xf numFmtId='45'/><xf numFmtId='14'/><xf numFmtId='170'/><xf numFmtId='10'/></cellXfs>""",
-    "xl/sharedStrings.xml": ROOT % "<si><t>Lab 3</t></si><si><r><t>m</t></r><r><t>1</t></r><rPh><t>x</t></rPh></si>",
-    "xl/s.xml": ROOT % "",
-    "xl/t.xml": ROOT % "<row><c r='A1' t='s'><v>0</v></c></row><row><c r='A2' t='s'><v>1</v></c><c r='B2' t='inlineStr'><is><t>m2</t></is></c><c r='C2' t='str'><v>t (s)</v></c><c r='D2' t='str'><v>u(t)</v></c></row><row><c r='A3' s='3'><f>1+1</f><v>200.09999999999999</v></c><c r='B3'><v>0.21</v></c><c r='C3' s='1'><v>4.6180555555555553E-5</v></c><c r='D3' s='4'><v>0.02</v></c></row><row><c r='B4'><v>0.22</v></c><c r='C4'><v>3</v></c><c r='D4'><v>0.1</v></c></row><mergeCells><mergeCell ref='A3:A4'/></mergeCells>",
-}  # fmt: skip
-ODS = {
-    "content.xml": ROOT % "<style table:name='h'><table-properties table:display='false'/></style><table:table table:name='Old' table:style-name='h'/><table:table table:name='Lab'><table:table-row><table:table-cell><text:p>Lab 3</text:p></table:table-cell><table:table-cell table:number-columns-repeated='16000'/></table:table-row><table:table-row><table:table-cell><text:p>m1</text:p></table:table-cell><table:table-cell><text:p>m2</text:p></table:table-cell><table:table-cell><text:p>t (s)</text:p></table:table-cell><table:table-cell><text:p>u(t)</text:p></table:table-cell></table:table-row><table:table-row><table:table-cell table:number-rows-spanned='2' office:value-type='float' office:value='200.1'><text:p>200,1 g</text:p></table:table-cell><table:table-cell office:value-type='float' office:value='0.21'/><table:table-cell office:value-type='time' office:time-value='PT00H00M03.99S'/><table:table-cell office:value-type='percentage' office:value='0.02'/></table:table-row><table:table-row><table:covered-table-cell/><table:table-cell office:value-type='float' office:value='0.22'/><table:table-cell office:value-type='float' office:value='3'/><table:table-cell office:value-type='float' office:value='0.1'/></table:table-row><table:table-row table:number-rows-repeated='1048000'><table:table-cell table:number-columns-repeated='16384'/></table:table-row></table:table>",
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("name", "parts"), [("runs.xlsx", XLSX), ("runs.ods", ODS)])
-def test_a_workbook_is_its_first_sheet_as_shown(read: Any, name: str, parts: dict[str, str]) -> None:
-    """A formula has its stored value, a merged cell counts in all rows, a clock, a percentage and a unit are read."""
-    runs = read(workbook(parts), name)
-    assert numbers(runs) == exactly("0.2001 0.21 3.99 0 0 0.0798", "0.2001 0.22 3 0 0 0.1")
-    assert "sheet 'Lab' of 'Old' (hidden), 'Lab'" in runs.remarks[0]
-    main = "xl/t.xml" if "xlsx" in name else "content.xml"
-    dates = {"<c r='B3'><v>0.21</v>": "<c r='B3' s='2'><v>45000</v>", "office:value='0.21'": "office:date-value='2026-03-05'"}  # fmt: skip
-    errors = {"<v>0.21</v>": "<f>A3</f>", "<c r='B3'><v>0.21": "<c r='B3' t='e'><v>#DIV/0!"}
-    for old, new in (dates | errors).items():
-        part = parts[main].replace(old, new).replace("float' office:date", "date' office:date")
-        if part != parts[main]:
-            with pytest.raises(Unreadable, match=r"row 1: m2 '(a date, |=A3|#DIV/0!).* is not a number"):
-                read(workbook(parts | {main: part}), name)
-
-
-@pytest.mark.parametrize(
-    ("content", "why"),
-    [
-        (b"PK\x03\x04", "it is damaged, has a password, or is no workbook"),
-        (workbook({"content.xml": "<!DOCTYPE x><a/>"}), "content.xml has a document type"),
-        (workbook({"content.xml": "<a/>", "big": "0" * (65 << 20)}), "it is larger than 64 MB, unpacked"),
-        (workbook({"content.xml": ODS["content.xml"].replace("<table:covered-table-cell/>", "<table:table-cell table:number-columns-repeated='9000000'><text:p>1</text:p></table:table-cell>")}), "it has more than 4 million cells"),
-        (workbook(XLSX | {"xl/t.xml": ROOT % "".join(f"<c r='XFD{i}'><v>1</v></c>" for i in range(1, 300))}), "it has more than 4 million cells"),
-    ],
-    ids=count(),
-)  # fmt: skip
-def test_workbooks_that_are_refused(read: Any, content: bytes, why: str) -> None:
-    with pytest.raises(Unreadable, match=why):
-        read(content, "runs.xlsx")
-
-
-def test_a_workbook_with_a_password_is_refused(read: Any) -> None:
-    content = bytearray(workbook(ODS))
-    content[6] |= 1
-    content[content.rindex(b"PK\x01\x02") + 8] |= 1
-    with pytest.raises(Unreadable, match="password required"):
-        read(bytes(content), "runs.ods")
-
-
-def test_sheets_by_name(batch: Batch, read: Any) -> None:
-    ran = batch(workbook(ODS), "--only a --sheet Las", "in.ods")
-    assert ran.err == "atwood: cannot read IN: there is no sheet 'Las'; there are 'Old' (hidden), 'Lab'\n"
-    ran = batch(workbook(ODS), "--only a --sheet Old", "in.ods")
-    assert ran.err == "atwood: cannot read IN: sheet 'Old' of 'Old' (hidden), 'Lab' is empty\n"
-    notes = workbook({"content.xml": ODS["content.xml"].replace(">m1<", ">Notes<")})
-    assert "; sheet 'Lab' of 'Old' (hidden), 'Lab'; give --column m1" in batch(notes, "", "in.ods").err
-    with pytest.raises(Unreadable, match=r"; sheet 'Lab' of 'Old' .* m1 is missing"):
-        read(notes, "runs.ods")
-    plain = ODS["content.xml"].replace("<text:p>Lab 3</text:p>", "")
-    ran = batch(workbook({"content.xml": plain}), "--only a --digits 3 --sheet Lab", "in.ods")
-    assert ran.out.splitlines()[1:] == ["200.1 g,0.21,00:00:03.99,2%,0.237,", "200.1 g,0.22,3,0.1,0.465,"]
-
-
 def test_a_small_file_does_not_fill_the_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file of 1 MB with 1 GB of blank lines took 11 GB."""
     (tmp_path / "runs.csv.gz").write_bytes(gzip.compress(b"\n" * (3 << 20)))
@@ -378,3 +300,85 @@ def test_a_header_may_come_in_two_pieces(batch: Batch, monkeypatch: pytest.Monke
     monkeypatch.setattr(sources, "BLOCK_BYTES", 1)
     assert batch('"time\nof day";m1;m2\n9;1;3\n').out.startswith('"time\nof day";m1;m2;regime;')
     assert batch('{"m1":1,"m2":3}\n{"m1":1,"m2":3,"n":9}\n', "--column M=n", "in.ndjson").status == 0
+
+
+def test_differences_of_times_are_in_seconds(tmp_path: Path) -> None:
+    polars, pandas = pytest.importorskip("polars"), pytest.importorskip("pandas")
+    masses, times = {"m1": [0.2, 0.201, 0.2], "m2": [0.207, 0.206, 0.21]}, [3.99, 5.02, nan]
+    spans = [timedelta(seconds=3.99), timedelta(seconds=5.02), None]
+    want = numbers(read_runs(masses | {"t": times}, given={"drop": DROP}))
+    for heading in ("t", "t (ms)"):  # the unit of a cell goes first
+        for column in (spans, np.array([3990, 5020, "NaT"], "m8[ms]"), np.array(spans, "m8[ns]")):
+            assert numbers(read_runs(masses | {heading: column}, given={"drop": DROP})) == want
+        for frame in (polars.DataFrame, pandas.DataFrame):
+            assert numbers(read_runs(frame(masses | {heading: spans}), given={"drop": DROP})) == want
+
+
+class ArrowTable:
+    """A table as PyArrow has it: columns without names, whose cells are no numbers of Python."""
+
+    column_names = ("m1", "m2", "a")
+    columns = tuple(SimpleNamespace(to_pylist=cells.copy) for cells in ([0.2, 0.3], [0.4, 0.5], [1, 2]))
+
+
+def test_tables_of_other_makers_are_read_or_refused_by_their_type() -> None:
+    want = {"m1": ["0.2", "0.3"], "m2": ["0.4", "0.5"], "a": ["1", "2"]}
+    assert numbers(read_runs(ArrowTable())) == numbers(read_runs(want))
+    with pytest.raises(
+        Unreadable, match=r"it is of type SimpleNamespace; give a path, a mapping or a data frame"
+    ):
+        read_runs(SimpleNamespace(columns=["m1", "m2", "a"]))
+
+
+ENCODED = "n,m1,m2\nä,1,3\n\nö,2,3\n"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("size", [5, 1 << 20])
+def test_one_rule_for_encodings_and_line_ends(
+    batch: Batch, tmp_path: Path, encoding: str, end: str, size: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`batch` refused what `fit` read."""
+    monkeypatch.setattr(sources, "BLOCK_BYTES", size)
+    ran = batch(ENCODED.replace("\n", end).encode(encoding), "--only a")
+    if (encoding, size) == ("cp1252", 5):  # the first block tells the encoding
+        assert "it is not UTF-8, though it begins so; save it as UTF-8" in ran.err
+        return
+    rows = ["n,m1,m2,acceleration,error", "ä,1,3,4.903325,", "ö,2,3,1.96133,"]
+    assert ran.out.removeprefix("\ufeff").split("\r\n" if end == "\r\n" else "\n") == [*rows, ""]
+    assert ("read as: text in Windows-1252." in ran.err) == (encoding == "cp1252")
+    table = ENCODED.replace("n,", "a (m/s²),").replace("ä", "1").replace("ö", "2").replace("\n", end)
+    (tmp_path / "runs.csv").write_bytes(table.encode(encoding))
+    runs = read_runs(tmp_path / "runs.csv")
+    assert numbers(runs) == exactly("1 3 1 0 0 0", "2 3 2 0 0 0")
+
+
+@pytest.mark.parametrize(
+    ("content", "why"),
+    [
+        (TABLE.encode("utf-16")[:-1], "it is not UTF-16, though it begins so; save it as UTF-8"),
+        (TABLE.encode("utf-32"), "it is in UTF-16 or UTF-32; save it as UTF-8"),
+    ],
+)
+def test_encodings_that_are_refused(batch: Batch, read: Any, content: bytes, why: str) -> None:
+    assert why in batch(content).err
+    with pytest.raises(Unreadable, match=re.escape(why)):
+        read(content)
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda x: x + b"x", lambda x: x[:-8] + b"wrng" + x[-4:], lambda x: x[:-9]]
+)
+def test_damaged_gzip_is_called_so(batch: Batch, read: Any, damage: Any) -> None:
+    """A wrong sum, or bytes behind it, was "not compressed"."""
+    content = damage(gzip.compress(TABLE.encode()))
+    assert batch(content, "", "in.csv.gz").err == "atwood: cannot read IN: it is damaged\n"
+    with pytest.raises(Unreadable, match="it is damaged"):
+        read(content, "runs.csv.gz")
+
+
+def test_a_header_may_have_one_known_heading(batch: Batch) -> None:
+    """The row with most words was the header."""
+    assert batch("m1,1,2\n0.3,good,bad\n0.4,fair,poor\n", "--m2 1 --only a").out.startswith("m1,1,2,acceleration,error\n0.3,good,bad,")  # fmt: skip
+    assert batch("Mass 1\nm1 (kg),quality,m2\n1,good,3\n", "--only a").out.startswith("m1 (kg),quality,m2,acceleration")  # fmt: skip

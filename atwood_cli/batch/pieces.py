@@ -52,7 +52,8 @@ class Csv:
 
     def __init__(self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]]):
         """Read the header, by its ``known`` columns. The rows ``above`` it are left out."""
-        self._texts = map(_decoded, whole_lines(blocks, is_csv=True))
+        self.remarks: list[str] = []
+        self._texts = map(bytes.decode, whole_lines(blocks, True, self.remarks))
         self._rest = self._whole("", partial(self._below_header, known))
 
     def pieces(self, headings: Sequence[Heading]) -> Iterator[Piece]:
@@ -163,7 +164,7 @@ def read_ndjson(
     keys: dict[str, object] = {}
     known = -1
     wanted: Sequence[Heading] = ()
-    for text in whole_lines(blocks, is_csv=False):
+    for text in whole_lines(blocks, False, []):
         lines: list[str] = []
         objects: list[dict[str, object]] = []
         errors: dict[int, str] = {}

@@ -243,7 +243,8 @@ def _remarks(columns: ReadColumns, wanted: Wanted, table: Csv | None = None) -> 
     """Return sentences on how a table was read, if not as usual, and on the units of results then."""
     headings = [heading for heading in columns.headings if heading.place >= 0]
     above = [ABOVE] if table and table.above else []
-    remarks = read_as(headings, table.separator if table else "", columns.comma, above)
+    how = [*table.remarks, *above] if table else []
+    remarks = read_as(headings, table.separator if table else "", columns.comma, how)
     units = _units(wanted)
     if units and any(heading.read.size != 1 or heading.read.terms for heading in headings):
         remarks.append(f"results: {', '.join(f'{x} in {unit}' for x, unit in units.items())}.")

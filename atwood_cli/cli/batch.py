@@ -72,10 +72,10 @@ Examples:
 
 Columns {", ".join(INPUTS)} are the options of solve, which give what all
 rows share: numbers in SI units, wrap in degrees, or in the unit of the heading, as m1 (g), M [kg] or R/cm.
-A row with units in its cells is solved by itself. An empty cell, NA, NULL or null is not given. Other columns
-are kept and named as not read, but one that may mean an input is refused, like radius without R. Results
-follow each row; a row with too few or too many cells is an error. Piped rows are solved as they come. Cells
-become doubles in SI units; solve reads 0.1 as exactly 1/10, so last digits may differ.
+An empty cell, NA, NULL or null is not given. Other columns are kept and named as not read, but one that may
+mean an input is refused, like radius without R. Results follow each row; a row with too few or too many cells
+is an error. Piped rows are solved as they come. Cells become doubles in SI units; solve reads 0.1 as exactly
+1/10, so last digits may differ. A row with a unit or radians in a cell is solved by itself, exactly as typed.
 
 The usual seven results are {", ".join(STANDARD)}.
 The exit status is 1 if a row has an error, or if a quantity that --only names has no value in any row.

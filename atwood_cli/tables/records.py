@@ -14,7 +14,6 @@ SEPARATORS = ",\t;"
 MOST_ABOVE = 40
 """The most rows of titles above the headings."""
 QUOTATION = 'has a quotation mark that is left open or out of place; write it "like ""this"""'
-STRAY_RETURN = "has a carriage return without a line feed; save it with line feeds"
 
 
 class GoesOn(Unreadable):
@@ -36,23 +35,20 @@ def records_of(text: str, separator: str, line: int = 1) -> Iterator[tuple[int, 
     try:
         for cells in csv.reader(lines(), delimiter=separator, strict=True):
             record = "".join(taken)
-            if "\r\r" in record[-3:]:  # csv would take both for line ends
-                raise csv.Error("new-line")
             if record.strip() or len(cells) > 1:
                 yield line, record, cells
             line += len(taken)
             taken.clear()
     except csv.Error as error:
-        why = STRAY_RETURN if "new-line" in str(error) else QUOTATION
         kind = GoesOn if "end of data" in str(error) else Unreadable
-        raise kind(f"the row that begins in line {line} {why}") from None
+        raise kind(f"the row that begins in line {line} {QUOTATION}") from None
 
 
 def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) -> tuple[int, str, int]:
     """Return how many headings of a table are ``known``, its separator, and the number of rows above them.
 
-    The header is the first row with two known headings, or else with most words, by the separator that makes
-    most known headings, or else most words.
+    The header is the first row with two known headings, or else one among several cells, or else with most
+    words, by the separator that makes most known headings, or else most words.
     """
     csv.field_size_limit(LONGEST_RECORD)
     headers: list[tuple[tuple[int, int, int], int, str, int]] = []
@@ -61,7 +57,8 @@ def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) ->
             rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
             for above, row in enumerate(islice(rows, MOST_ABOVE + 1)):
                 count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
-                headers.append(((count if count > 1 else 0, words, len(row)), count, separator, above))
+                is_known = count > 1 or sum(map(bool, row)) > 1  # a title may have the name of a quantity
+                headers.append(((count if is_known else 0, words, len(row)), count, separator, above))
                 if count > 1:
                     break
     return max(headers, key=lambda header: header[0], default=(0, 0, SEPARATORS[0], 0))[1:]

@@ -1,21 +1,20 @@
 """A table as spreadsheets, people and Python have it: its headings found, its cells as texts."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, suppress
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import ExitStack
 from functools import partial
 from os import PathLike, fspath
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 from ..numbers.text import in_quotes, without_blanks
 from .cells import OWN_UNIT
 from .headings import ABOVE, Vocabulary, recognised, units_in
+from .packages import MOST_BYTES
 from .records import find_header, records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
-from .workbooks import MOST_BYTES, opened_table
+from .workbooks import opened_table
 
-UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
-"""The first bytes of a file in UTF-16, as Excel writes its "Unicode text"."""
 COMMENTS = "lines that begin with # left out"
 MISSING = ("nan", "NaN", "None", "<NA>", "NaT", "--")
 """How Python writes a missing value, and NumPy a masked one."""
@@ -38,22 +37,45 @@ def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str], name
     if isinstance(source, str | PathLike):
         with ExitStack() as stack:
             file, remarks = opened_table(fspath(source), name, stack)
-            content = _content(blocks_of(file))
-        sheet = read_sheet(content, vocabulary, named)
+            text = _content(file, remarks)
+        sheet = read_sheet(text, vocabulary, named)
         return sheet._replace(remarks=[*remarks, *sheet.remarks])
-    if hasattr(source, "collect") or not (hasattr(source, "items") or hasattr(source, "columns")):
-        raise Unreadable(f"it is of type {type(source).__name__}; give a path, a mapping or a data frame")
     columns: list[tuple[str, list[str]]] = []
-    pairs = source.items() if hasattr(source, "items") else zip(source.columns, source, strict=True)
-    for name, cells in pairs:
+    for heading, cells in _columns(source):
         if isinstance(cells, str) or not hasattr(cells, "__iter__"):
-            what = f"column {in_quotes(name)} is of type {type(cells).__name__}"
+            what = f"column {in_quotes(heading)} is of type {type(cells).__name__}"
             raise Unreadable(f"{what}; give a sequence of cells")
-        columns.append((str(name), ["" if str(cell) in MISSING else str(cell) for cell in cells]))
+        columns.append((str(heading), [_text(cell) for cell in cells]))
     if len({len(cells) for _, cells in columns}) > 1:
         lengths = ", ".join(f"{in_quotes(name)} has {len(cells)} cells" for name, cells in columns)
         raise Unreadable(f"its columns differ in length: {lengths}")
     return Sheet([name for name, _ in columns], list(zip(*(cells for _, cells in columns), strict=True)))
+
+
+def _columns(source: Any) -> Iterable[tuple[object, Any]]:
+    """Return the headings and cells of a mapping, or a table of pandas, polars or PyArrow.
+
+    Raises Unreadable for any other type.
+    """
+    if hasattr(source, "items"):
+        pairs: Iterable[tuple[object, Any]] = source.items()
+        return pairs
+    if hasattr(source, "get_columns"):  # polars
+        return ((column.name, column) for column in source.get_columns())
+    if hasattr(source, "column_names"):  # PyArrow
+        return zip(source.column_names, (column.to_pylist() for column in source.columns), strict=True)
+    raise Unreadable(f"it is of type {type(source).__name__}; give a path, a mapping or a data frame")
+
+
+def _text(cell: Any) -> str:
+    """Return a cell as text: a difference of times in seconds, "" for a missing value."""
+    if str(cell) in MISSING:
+        return ""
+    if hasattr(cell, "total_seconds"):
+        return f"{cell.total_seconds()} s"
+    if getattr(getattr(cell, "dtype", None), "kind", "") == "m":  # of NumPy
+        return f"{cell / type(cell)(1, 's')} s"
+    return str(cell)
 
 
 def units_in_cells(sheet: Sheet) -> Sheet:
@@ -71,34 +93,25 @@ def units_in_cells(sheet: Sheet) -> Sheet:
     return sheet._replace(rows=rows, remarks=["units in the row below the headings", *sheet.remarks])
 
 
-def _content(blocks: Iterator[bytes]) -> bytes:
-    """Return the bytes of a small file, in UTF-8 if they begin with a mark of UTF-16. Raises Unreadable."""
+def _content(file: IO[bytes], remarks: list[str]) -> str:
+    """Return the text of a small file, and add how it was read to the remarks. Raises Unreadable."""
     content = b""
-    for block in blocks:
-        content += block
+    for lines in whole_lines(blocks_of(file), True, remarks):
+        content += lines
         if len(content) > MOST_BYTES:
             raise Unreadable(f"it is larger than {MOST_BYTES >> 20} MB, unpacked, the most that fit reads")
-    if content.startswith(UTF_16_MARKS):
-        with suppress(UnicodeDecodeError):
-            content = content.decode("utf-16").encode()
-    return b"".join(whole_lines(iter([content]), is_csv=True))
+    return content.decode("utf-8-sig")
 
 
-def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
+def read_sheet(text: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
     """Return the table in a text, without blank rows; each row has as many cells as there are headings.
 
     The separator is that by which most headings are known. Raises Unreadable.
     """
     remarks: list[str] = []
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = content.decode("cp1252", "replace")
-        remarks.append("text in Windows-1252")
-
     known = partial(recognised, vocabulary=vocabulary, named=named)
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    lines = re.sub(r'\A"?sep=[,;\t]"?\n', "", text, flags=re.IGNORECASE).split("\n")
+    text = re.sub(r'\A"?sep=[,;\t]"?\n', "", text.replace("\r\n", "\n"), flags=re.IGNORECASE)
+    lines = text.split("\n")
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = re.sub(r"^\s*#[# \t]*(?![,;])", "", lines[i])  # NumPy writes headings so; # may be one, too
         is_first = not "".join(lines[:i]).strip()

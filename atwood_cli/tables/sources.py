@@ -5,9 +5,11 @@ import os
 import re
 import sys
 import zlib
+from codecs import getincrementaldecoder
 from collections.abc import Iterator
 from contextlib import ExitStack, suppress
 from functools import partial
+from io import IncrementalNewlineDecoder
 from itertools import chain
 from pathlib import Path
 from select import select
@@ -26,6 +28,9 @@ WORKBOOKS = (".xlsx", ".xlsm", ".ods")
 SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"} | dict.fromkeys(WORKBOOKS, "csv")
 BLOCK_BYTES = 2 << 20
 """The bytes that are read at a time. A piece of a table takes several times as much memory."""
+UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+"""The first bytes of a file in UTF-16, as Excel writes its "Unicode text"."""
+GZIP_MARK = b"\x1f\x8b"
 MOMENT = 0.05  # seconds
 LONGEST_RECORD = 1 << 20
 """The bytes of the longest record: an open quotation mark must not make one of the whole file."""
@@ -33,13 +38,14 @@ TOO_LONG = f"is longer than {LONGEST_RECORD >> 20} MB, the most taken"
 FOREIGN = {
     rb"\x1f\x8b|BZh|\xfd7zXZ|\x28\xb5\x2f\xfd": "compressed; unpack it first",
     rb"PK\x03\x04|\xd0\xcf\x11\xe0": "a workbook or an archive; give a workbook by its name, .xlsx or .ods",
-    rb"\xff\xfe|\xfe\xff|.?\0": "in UTF-16 or UTF-32; save it as UTF-8",
+    rb"\xff\xfe\0\0|.?\0": "in UTF-16 or UTF-32; save it as UTF-8",
     rb"PAR1": "Parquet; batch reads it with --from parquet, and fit reads CSV",
     rb"\[[{\n]": "a JSON array; write an object a line (jq -c '.[]'), and give --from ndjson to batch",
     rb"\{\s*\n": "JSON in several lines; write an object a line (jq -c .), and give --from ndjson to batch",
 }
 """Files of other kinds: the patterns of their first bytes, their names, and the way to use them."""
-JSON_FOR_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
+FOREIGN_TO_JSON = {rb"\xff\xfe|\xfe\xff": "in UTF-16; save it as UTF-8"}
+FOREIGN_TO_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
 
 
 class Unreadable(Exception):
@@ -90,9 +96,14 @@ def opened(source: str, stack: ExitStack) -> IO[bytes]:
             raise Unreadable("it is closed")
         return sys.stdin.buffer
     try:
-        opener: Any = gzip.open if is_packed(source) else open
-        file: IO[bytes] = stack.enter_context(opener(source, "rb"))
-        return file
+        opener: Any = open
+        file: Any = stack.enter_context(opener(source, "rb"))
+        if is_packed(source):
+            if file.peek(2)[:2] != GZIP_MARK:
+                raise Unreadable("it is not compressed, though its name ends in .gz")
+            file = gzip.GzipFile(fileobj=file)
+        unpacked: IO[bytes] = file
+        return unpacked
     except OSError as error:
         raise Unreadable(str(error.strerror)) from None
 
@@ -110,10 +121,8 @@ def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
         try:
             block = read(BLOCK_BYTES)
         except (OSError, EOFError, zlib.error) as error:
-            why = getattr(error, "strerror", None) or str(error)
-            if isinstance(error, gzip.BadGzipFile):
-                why = "it is not compressed, though its name ends in .gz"
-            raise Unreadable(why) from None
+            why = error.strerror if isinstance(error, OSError) else None
+            raise Unreadable(why or "it is damaged") from None
         if not block:
             return
         yield block
@@ -131,15 +140,17 @@ def _what_comes(pipe: Any, most: int) -> bytes:
     return block
 
 
-def whole_lines(blocks: Iterator[bytes], is_csv: bool) -> Iterator[bytes]:
-    """Yield blocks of whole lines. Raises Unreadable for a file that is no CSV, or else no NDJSON."""
-    rest, line = b"", 1
-    for block in chain(blocks, [b""]):
-        if line == 1 and not rest:
-            start = block.removeprefix(b"\xef\xbb\xbf")
-            for pattern, kind in (FOREIGN | JSON_FOR_CSV if is_csv else FOREIGN).items():
-                if re.match(pattern, start, re.DOTALL):
-                    raise Unreadable(f"it is {kind}")
+def whole_lines(blocks: Iterator[bytes], is_csv: bool, remarks: list[str]) -> Iterator[bytes]:
+    """Yield blocks of whole lines in UTF-8. Raises Unreadable for a file that is no CSV, or else no NDJSON.
+
+    The encoding of CSV, if it is another, is added to the remarks.
+    """
+    first, rest, line = next(blocks, b""), b"", 1
+    for pattern, kind in (FOREIGN | (FOREIGN_TO_CSV if is_csv else FOREIGN_TO_JSON)).items():
+        if re.match(pattern, first.removeprefix(b"\xef\xbb\xbf"), re.DOTALL):
+            raise Unreadable(f"it is {kind}")
+    texts = _in_utf8(first, blocks, remarks) if is_csv else chain([first], blocks)
+    for block in chain(texts, [b""]):
         rest += block
         end = rest.rfind(b"\n") + 1 if block else len(rest)
         if end:
@@ -148,3 +159,24 @@ def whole_lines(blocks: Iterator[bytes], is_csv: bool) -> Iterator[bytes]:
             rest = rest[end:]
         if len(rest) > LONGEST_RECORD:
             raise Unreadable(f"the row that begins in line {line} {TOO_LONG}")
+
+
+def _in_utf8(first: bytes, blocks: Iterator[bytes], remarks: list[str]) -> Iterator[bytes]:
+    """Yield a text in UTF-8, with a line feed for each carriage return that has none.
+
+    The first block tells UTF-16, by its mark, from UTF-8, and from Windows-1252. Raises Unreadable.
+    """
+    encoding = "UTF-16" if first.startswith(UTF_16_MARKS) else "UTF-8"
+    try:
+        getincrementaldecoder(encoding)().decode(first)
+    except UnicodeDecodeError:
+        encoding = "cp1252"
+        remarks.append("text in Windows-1252")
+    errors = "replace" if encoding == "cp1252" else "strict"
+    decoder = IncrementalNewlineDecoder(getincrementaldecoder(encoding)(errors), translate=False)
+    try:
+        for block in chain([first], blocks, [b""]):
+            if text := decoder.decode(block, final=not block):
+                yield re.sub("\r(?!\n)", "\n", text).encode()
+    except UnicodeDecodeError:
+        raise Unreadable(f"it is not {encoding}, though it begins so; save it as UTF-8") from None
