@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any
 
 from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
-from ..output.forms import Destination, Picture, show
+from ..output.forms import FORMS, Destination, Picture, show
 from ..output.text import say
 from ..reading.names import divided, read_names
 from ..solver.scene import SceneError
@@ -92,7 +92,7 @@ def fit(
     only: Only = None,
 ) -> int:
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
-    if "runs" in names and (not target.form or (target.form == "csv" and len(names) > 1)):
+    if "runs" in names and (not target.form or (len(names) > 1 and not FORMS[target.form].has_notes)):
         raise SceneError("only", "runs", "takes --json, or --csv and no other name")
     from ..laboratory import fit_of
     from ..laboratory.report import report_of

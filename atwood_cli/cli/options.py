@@ -78,7 +78,7 @@ def scene_option(name: str, remark: str | None = None) -> Any:
 
 Command = Callable[..., int]
 FORM_NAMES = " ".join(FORMS)
-FOR_PROGRAMS = "json csv"
+FOR_PROGRAMS = " ".join(name for name, form in FORMS.items() if not form.is_page)
 NO_EFFECT = {
     **dict.fromkeys(FORMS, FORM_NAMES),
     "explain": f"{FOR_PROGRAMS} budget",

@@ -25,12 +25,13 @@ class Report(NamedTuple):
 
 
 class Form(NamedTuple):
-    """A form for programs: its files' suffix, its option's help, its printer, whether it has the notes."""
+    """A form: its files' suffix, its option's help, its printer, if it has the notes, if it is a page."""
 
     suffix: str
     help: str
     write: Callable[[Report], None]
     has_notes: bool
+    is_page: bool = False
 
 
 def _write_json(report: Report) -> None:
@@ -49,14 +50,12 @@ def _write_csv(report: Report) -> None:
         table.writerow(map(cell, record.values()))
 
 
-def _write_markdown(report: Report) -> None:
-    report.page(Page(is_markdown=True))
-
-
 FORMS = {
     "json": Form(".json", "Print JSON.", _write_json, True),
     "csv": Form(".csv", "Print CSV, with a line of names first.", _write_csv, False),
-    "markdown": Form(".md", "Print the page as Markdown.", _write_markdown, True),
+    "markdown": Form(
+        ".md", "Print the page as Markdown.", lambda report: report.page(Page(is_markdown=True)), True, True
+    ),
 }
 """The forms, by the name of their option. Without such an option a page is printed, or bare values."""
 
