@@ -214,7 +214,7 @@ def groups(given: Mapping[str, GivenColumn], size: int, terms: Mapping[str, Term
     own = in_own_terms({name: column.doubles for name, column in given.items()}, terms)
     columns = {name: _kinds(name, given, own) for name in given}
     heavier = _heavier(given, own, terms, size)
-    mu_k_above = mu_k > mu  # false where one is not given, as it is NaN there
+    mu_k_above = mu_k > mu  # to split groups: `Scene.of` has the rule. NaN, which is not given, is not above
     # Rows differ by the digits of a key, each with its base: kinds, the heavier mass, a mu_k above mu.
     digits: list[tuple[int, NDArray[Any]]] = [(len(Kind), kinds) for kinds in columns.values() if kinds.ndim]
     if not (heavier == 1).all():

@@ -144,7 +144,7 @@ class Step(NamedTuple):
     """What a plan does for those quantities of a task that need no more answers than the task has."""
 
     task: Task
-    uncertain: tuple[str, ...]
+    to_certify: tuple[str, ...]
     """Quantities of which the program says by `condition_of` in which rows they are certified."""
     missing: dict[str, str]
     """The reasons of quantities without a value."""
@@ -183,7 +183,7 @@ def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
     """Return a step, made by running the model on columns quantity by quantity, and add its formulas."""
     machine = _machine_of_columns(task, LEVELS[accuracy][task.level])
     missing: dict[str, str] = {}
-    uncertain, row_by_row, asking, question = [], [], [], ""
+    to_certify, row_by_row, asking, question = [], [], [], ""
     for name in task.names:
         try:
             if name == "regime":
@@ -200,14 +200,14 @@ def _step(task: Task, accuracy: Accuracy, formulas: dict[str, Term]) -> Step:
         else:
             if condition is not None:
                 formulas[condition_of(name)] = condition
-                uncertain.append(name)
+                to_certify.append(name)
     tasks_by_answer = []
     if question:
         formulas |= _answer(task, question, DOUBLES)
         for answer in (False, True):
             branches = task.branches | {(question, answer)}
             tasks_by_answer.append((answer, task._replace(branches=branches, names=(*asking,))))
-    return Step(task, (*uncertain,), missing, (*row_by_row,), question, tasks_by_answer)
+    return Step(task, (*to_certify,), missing, (*row_by_row,), question, tasks_by_answer)
 
 
 @lru_cache(KEPT_PLANS)
@@ -229,7 +229,7 @@ def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
         margin: Any = getattr(decided, point) * machine.g - machine.f
     else:
         mu = decided.scene.mu if method == "slips_at" else decided.limiting_mu
-        margin = ar.log1p(decided.ratio_minus_1(cast(LimitingCase, point), ar)) - ar.number(mu) * machine.phi
+        margin = decided.margin(decided.ratio_minus_1(cast(LimitingCase, point), ar), cast(Fraction, mu), ar)
     sure = less(margin.row_error, 0.25 - margin.fixed_error)
     return {condition_of(question): sure, question: less(0.0, margin.parts[0])}
 

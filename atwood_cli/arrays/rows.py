@@ -61,7 +61,7 @@ class Rows:
             for name, reason in step.missing.items():
                 self.reasons[name, reason] += int(np.count_nonzero(remain))
             # A quantity that is not certified in a row goes to the next level.
-            for name in step.uncertain:
+            for name in step.to_certify:
                 failed = select(rows, np.flatnonzero(remain & ~flags[condition_of(name)]))
                 yield failed, step.task._replace(names=(name,), level=task.level + 1)
             # A quantity that no program gives goes to the last level at once.
@@ -111,7 +111,7 @@ class Rows:
         if rows.size > ROWS_ONE_BY_ONE:
             flags = self._run(answering(task, question), rows)
             answers, sure = flags[question], flags[condition_of(question)]
-        # Exact arithmetic decides the rest.
+        # Exact arithmetic decides the rest. There is none about the wrap, as those answers are all sure.
         for place in np.flatnonzero(~sure).tolist():
             method, point = question.split()
             decided = Decisions(task.pattern.scene(partial(self.number, rows[place])))

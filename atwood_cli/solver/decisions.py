@@ -2,7 +2,7 @@
 
 A string slips if the tension ratio r = T_h/T_l that it would have if it gripped exceeds e^{μφ}. The regime is
 the result of the first line below that answers. The second table has the scenes whose r is compared, each a
-`LimitingCase`.
+`LimitingCase`: `slips_at` compares with static friction, `slides_at` with that of the regime.
 
     question                                             decided by                          result
     does kinetic friction follow from a measured a?      motion.finds == "mu_k"              slip
@@ -343,11 +343,11 @@ class Decisions:
         """
         if not mu:
             return ratio_minus_1(EXACT) > 0
+        return is_positive(lambda ar: self.margin(ratio_minus_1(ar), mu, ar))
 
-        def margin(ar: Arithmetic[N]) -> N:
-            return ar.log1p(ratio_minus_1(ar)) - ar.number(mu) * self.scene.wrap.radians(ar)
-
-        return is_positive(margin)
+    def margin(self, ratio_minus_1: N, mu: Fraction, ar: Arithmetic[N]) -> N:
+        """Return by how much ln(1 + ratio_minus_1) exceeds μφ."""
+        return ar.log1p(ratio_minus_1) - ar.number(mu) * self.scene.wrap.radians(ar)
 
     def slide_ratio_minus_1(self, ar: Arithmetic[N]) -> N:
         """Return T_h/T_l - 1 of a string that slides with the measured acceleration."""

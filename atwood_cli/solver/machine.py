@@ -93,7 +93,7 @@ class Machine(Generic[N]):
 
     @lazy
     def log_ratio(self) -> N:
-        """ln(T_h/T_l) of a string that grips."""
+        """ln(T_h/T_l) of a string that grips; over φ it is mu_verge, over μ the limiting arc."""
         return self.ar.log1p(self.ratio_minus_1)
 
     @lazy
@@ -384,6 +384,7 @@ class Machine(Generic[N]):
 
     @lazy
     def critical_pulley_mass(self) -> N:
+        """Pulley mass (kg) above which the string slips; also if the pulley given is locked."""
         friction_mass, decided = self.friction_mass, self.decided
         if not decided.can_slip:
             raise Undetermined(quantities.AXLE_HOLDS if decided.axle_holds else quantities.NO_CRITICAL_MASS)

@@ -76,7 +76,7 @@ class UncertainAnswers(Answers):
         return self._ends[n]
 
     def _end(self, x: str, step: Fraction) -> End:
-        """Solve the scene with an input so much more, but not below 0; what is found may go below it."""
+        """Solve with an input so much more, kept to the rules of `Scene.of`; what is found may be below 0."""
         scene = self.decided.scene
         number: Fraction = scene.number_of(x) + step
         if x == "mu_k" and scene.mu is not None:
