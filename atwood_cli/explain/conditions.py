@@ -31,7 +31,7 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     ">": operator.gt,
     ">=": operator.ge,
 }
-CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
+HOW_TO_EXPECT = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
 OTHER_TERMS = {"kg": [WEIGHT], "m/s²": [MULTIPLE_OF_G]}
@@ -55,7 +55,7 @@ def read_condition(typed: str) -> Condition:
     if (regime := re.sub(r"^\s*regime\s*==", "", typed).strip()) in REGIMES:
         return Condition(typed.strip(), regime)
     if not (match := COMPARISON.fullmatch(typed)):
-        raise SceneError("expect", typed, f"must be {CONDITIONS}")
+        raise SceneError("expect", typed, f"must be {HOW_TO_EXPECT}")
     word, sign, number = map(str.strip, match.groups())
     name = read_name("expect", word, QUANTITIES, "quantity", NAMES_BY_SYMBOL)
     unit = QUANTITIES[name].unit

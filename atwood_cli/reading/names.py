@@ -29,7 +29,7 @@ MEANT = {
 
 
 MASS_WORDS = "m mass masse masa massa масса".split()
-WORDS = {
+WORDS_FOR_INPUTS = {
     "M": "mp m_pulley pulley pulley_mass mass_pulley mass_of_pulley",
     "mu": "mu_s mu_static static_friction friction coefficient coeff friction_coefficient friction_coeff"
     " coefficient_of_friction",
@@ -45,11 +45,11 @@ WORDS = {
     "time": "t",
     "speed": "v velocity v_final vf final_speed final_velocity",
 }
-"""Other words for inputs and for what is measured."""
+"""Other words for inputs, and for what is measured: hints, which only `find` takes."""
 OTHER_NAMES = {
     **{f"{word}{number}": f"m{number}" for word in MASS_WORDS for number in (1, 2)},
     **dict.fromkeys(("m", "mass"), "M"),
-    **{word.replace("_", ""): name for name, words in WORDS.items() for word in words.split()},
+    **{word.replace("_", ""): name for name, words in WORDS_FOR_INPUTS.items() for word in words.split()},
     **{name.lower().replace("_", ""): name for name in (*reversed(INPUTS), *MEASURED) if name != "I"},
 }
 """The inputs by their other names, in small letters and without underscores; i may count rows."""

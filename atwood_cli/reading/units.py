@@ -85,7 +85,7 @@ _MIXED = re.compile(rf"(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([{''.join(_VULGAR)
 """A vulgar fraction, perhaps behind a whole number."""
 _PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
 _SYMBOLS = {symbol.translate(_PLAIN): symbol for symbols in UNITS.values() for symbol in symbols}
-WORDS = {
+WORDS_FOR_UNITS = {
     "kg": "kilogram kilograms kilos кг",
     "g": "gram grams gramm gramme grammes gramos gramas gr gm gms г",
     "m": "meter meters metre metres м",
@@ -97,7 +97,7 @@ WORDS = {
     **{"in": "inch inches", "ft": "foot feet", "lb": "pound pounds lbm", "rad": "radian radians"},
 }
 """Other words for units."""
-_SYMBOLS |= {word: symbol for symbol, words in WORDS.items() for word in words.split()}
+_SYMBOLS |= {word: symbol for symbol, words in WORDS_FOR_UNITS.items() for word in words.split()}
 
 # An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g, 1g±2%.
 _SIGN = r" ?(?:±|\+/?-) ?"

@@ -24,7 +24,7 @@ from ..solver.scene import STANDARD_GRAVITY
 
 Inputs = dict[str, Any]
 """The inputs of a scene by parameter, as doubles."""
-Columns = Mapping[str, Any]
+NamedColumns = Mapping[str, Any]
 """A column for each input, or for each quantity."""
 MOST_SCENES, SEED = 100_000, 1
 EXACT_DIGITS = 240
@@ -92,7 +92,7 @@ def draw_scenes(family: str, count: int, seed: int = SEED) -> list[Inputs]:
     return [draw(rng) for _ in range(count)]
 
 
-def in_numpy(m1: Any, m2: Any, M: Any, mu: Any) -> Columns:
+def in_numpy(m1: Any, m2: Any, M: Any, mu: Any) -> NamedColumns:
     """Solve scenes in plain doubles, with the equations as they stand in the paper, for m1 <= m2 and a disk.
 
     It is the same model, slip included, as one writes it with care in NumPy: both states are computed,
@@ -114,7 +114,7 @@ def in_numpy(m1: Any, m2: Any, M: Any, mu: Any) -> Columns:
     return dict(zip(STANDARD, (regime, a, t_l, t_h, mu_verge, friction, critical), strict=True))
 
 
-def in_digits(digits: int, **given: Any) -> Columns:
+def in_digits(digits: int, **given: Any) -> NamedColumns:
     """Run `solve`, a scene at a time."""
     rows = zip(*(column.tolist() for column in given.values()), strict=True)
     solutions = [solve(**dict(zip(given, row, strict=True)), digits=digits) for row in rows]
@@ -122,7 +122,7 @@ def in_digits(digits: int, **given: Any) -> Columns:
     return columns | {"regime": [REGIMES.index(regime) for regime in columns["regime"]]}
 
 
-Setting = Callable[..., Columns]
+Setting = Callable[..., NamedColumns]
 """A way to solve scenes: a function from columns of inputs to columns of quantities."""
 SETTINGS: dict[str, Setting] = {
     "plain doubles": in_numpy,
@@ -131,7 +131,7 @@ SETTINGS: dict[str, Setting] = {
 }
 
 
-def errors(solved: Columns, exact: Columns) -> list[float]:
+def errors(solved: NamedColumns, exact: NamedColumns) -> list[float]:
     """Return the worst error (ulp) of each scene whose regime is right; infinite where a value is lost."""
     rows, right = (zip(*(columns[name] for name in STANDARD), strict=True) for columns in (solved, exact))
     return [
@@ -190,6 +190,6 @@ def measure(family: str, scenes: Sequence[Inputs]) -> list[Measured]:
     ]
 
 
-def _columns(scenes: Sequence[Inputs], rows: int) -> Columns:
+def _columns(scenes: Sequence[Inputs], rows: int) -> NamedColumns:
     """Return the scenes as columns of ``rows`` rows, in which they are repeated."""
     return {name: np.resize([scene[name] for scene in scenes], rows) for name in scenes[0]}
