@@ -88,7 +88,7 @@ def above(text: str) -> Fraction:
 
 def rest(c: Claims, held: str, then: str, digits: int) -> None:
     assert below(held) <= c.b <= above(held)
-    assert c.h - c.l <= c.b
+    assert c.h - c.l <= min(c.b, Fraction(held))
     if match := re.search(f"at least {NUMBER}(\\.$| is needed)", then):
         c.least_mu(match[1])
 
@@ -104,12 +104,14 @@ def on_the_verge(c: Claims, critical: str, a: str, locked: str, digits: int) -> 
 
 def slips_on_any(c: Claims, mu: str, least: str, kinetic: str, digits: int) -> None:
     assert (c.any_pulley(), Fraction(mu)) == ({"slip"}, c.scene.mu)
+    assert Fraction(mu) < Fraction(least)
     c.least_mu(least, pulley=Fraction(0))
 
 
 def slips(c: Claims, where: str, mu: str, least: str, kinetic: str, digits: int) -> None:
     answers = c.expected()
     assert (answers["regime"], Fraction(mu)) == ("slip", c.scene.mu)
+    assert Fraction(mu) < Fraction(least)
     assert bool(where) == (c.b > 0 and answers["rim_acceleration"] == 0 and c.scene.M != inf)
     assert (kinetic != "") == (c.scene.mu_k is not None)
     assert not kinetic or Fraction(kinetic.split()[-1]) == c.scene.mu_k
@@ -117,8 +119,9 @@ def slips(c: Claims, where: str, mu: str, least: str, kinetic: str, digits: int)
 
 
 def assumed(c: Claims, where: str, least: str, digits: int) -> None:
-    assert bool(where) == (c.scene.M is None and c.scene.I is None)
-    c.least_mu(least, **({"pulley": Fraction(0)} if where else {}))
+    is_massless = c.scene.M is None and c.scene.I is None
+    assert where.startswith("On a massless pulley") == is_massless
+    c.least_mu(least, **({"pulley": Fraction(0)} if is_massless else {}))
 
 
 def holds(c: Claims, mu: str, least: str, digits: int) -> None:
@@ -152,6 +155,7 @@ def may_slip_somewhere(c: Claims) -> bool:
 def slips_between(c: Claims, least: str, most: str, digits: int) -> None:
     c.least_mass(least)
     assert [c.regime(h=h) for h in (max(c.l + c.b, below(most)), above(most))] == ["slip", "no-slip"]
+    assert (c.regime() == "slip") == (Fraction(least) < c.h < Fraction(most))
 
 
 def inertia(c: Claims, shown: str, digits: int) -> None:
@@ -206,8 +210,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
         lambda c: c.l == 0 or c.expected(pulley=Fraction(0), mu=Fraction(0))["regime"] == "no-slip"
     ),
     r"No slip: the string's end is fixed to the pulley\.": claimed(lambda c: c.l == 0),
-    r"mu is not given, so the string is assumed not to slip: true( on a massless pulley)? if mu is at least"
-    rf" {NUMBER}\.": assumed,
+    rf"Without mu, no slip is assumed\. (On a massless pulley, t|T)hat needs mu of at least {NUMBER}\.": assumed,
     rf"No slip: mu = {NUMBER}, and at least {NUMBER} is needed\.": holds,
     rf"No slip on any pulley: the heavier mass is {NUMBER} kg, and only above {NUMBER} kg does a heavy enough pulley make the string slip\.": holds_on_any,
     r"No slip on any pulley, for any heavier mass that can be typed\.": claimed(
@@ -254,16 +257,27 @@ REASONS: dict[str, Callable[[Claims], bool]] = {
 SENTENCES |= {f".*: {re.escape(unmarked(why))}\\.": claimed(truth) for why, truth in REASONS.items()}
 
 
+def near(rng: Random) -> Decimal:
+    """A number near 1, or 1."""
+    return 1 + rng.choice([-1, 0, 1]) * Decimal(10) ** -rng.randint(1, 9)
+
+
 def drawn(rng: Random) -> dict[str, str]:
     """A scene of any kind, some of them near a threshold, some with a free end."""
     words = with_friction(rng, size=rng.choice([1, 1, 1, 1e-200, 1e150]))
     if rng.random() < 0.1:
         words["wrap"] = rng.choice(["0.5", "3.14", "12.5"])
+    g, masses = Decimal(words.get("g", "9.80665")), [Decimal(words[x]) for x in ("m1", "m2")]
+    if "axle" in words and rng.random() < 0.3:
+        words["axle"] = str(abs(masses[0] - masses[1]) * g * near(rng))
     if "mu" not in words:
         return words | {"m1": "0"} if rng.random() < 0.1 else words
     verge = Answers(read_scene({**words, "mu": None}), 20)["mu_verge"]
     if verge and rng.random() < 0.4:
-        words["mu"] = str(verge * (1 + Decimal(10) ** -rng.randint(1, 9) * rng.choice([-1, 1])))
+        words["mu"] = str(verge * near(rng))
+    critical = Answers(read_scene(words), 20)["critical_heavier_mass"]
+    if critical and rng.random() < 0.4:
+        words["m1" if masses[0] > masses[1] else "m2"] = str(critical * near(rng))
     if rng.random() < 0.4:
         words["mu_k"] = str(Decimal(words["mu"]) * Decimal(rng.choice(["0", "0.3", "0.9", "0.9999", "1"])))
     return words

@@ -210,11 +210,8 @@ def _grips(answers: Answers) -> str:
     decided, scene = answers.decided, answers.decided.scene
     if scene.mu is None:
         no_mass = scene.M is None and scene.I is None and not decided.axle_holds
-        where = " on a massless pulley" if no_mass else ""
-        return (
-            f"`mu` is not given, so the string is assumed not to slip: true{where} if `mu` is at least"
-            f" {_enough(answers)}."
-        )
+        that = "On a massless pulley, that" if no_mass else "That"
+        return f"Without `mu`, no slip is assumed. {that} needs `mu` of at least {_enough(answers)}."
     return f"No slip: `mu` = {as_typed(scene.mu)}, and at least {_enough(answers)} is needed."
 
 
@@ -274,9 +271,13 @@ def remarks(answers: Answers) -> list[str]:
             sentences.append("A string that already slides keeps sliding, as `mu_k` is below `mu_verge`.")
     c, slips_above_a_mass = decided.rim_mass, decided.scene.mu is not None and decided.slips_once_it_moves
     if slips_above_a_mass and c is not None and not decided.slips_at("heaviest"):
-        most = answers.settle(lambda m: critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b, -1))
+        beside = _beside(answers, decided.heavy)
+        least = answers.rounded("critical_heavier_mass", beside)
+        most = answers.settle(
+            lambda m: critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b, -1), beside
+        )
         sentences.append(
-            f"The string slips if the heavier mass is between {_say(answers, 'critical_heavier_mass')} and"
+            f"The string slips if the heavier mass is between {format_number(least)} and"
             f" {format_number(most)} kg. Above that it holds again, as the pulley turns with it."
         )
     if decided.locked and decided.has_axle_friction and not decided.axle_holds:

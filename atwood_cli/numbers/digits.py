@@ -55,17 +55,22 @@ def to_digits(digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]
 
 
 def rounding_apart_from(given: Fraction | None, digits: int) -> Rounding[Decimal]:
-    """Return a function that rounds to so many digits, until the result is not that of ``given``."""
+    """Return a function that rounds to so many digits, until the result is not that of ``given``.
+
+    If it is the given number, all its digits are kept.
+    """
 
     def round_(x: Fraction | Decimal) -> Decimal:
         shown = to_digits(digits)(x)
+        if given is not None and x == given:
+            return exact_decimal(given) or shown
         if given is None or not shown.is_finite() or abs(shown.adjusted()) > MOST_DIGITS:
             return shown
         for kept in range(digits, MOST_DIGITS):
             round_alike = to_digits(kept)
             if (near := round_alike(x)) != round_alike(given):
                 return near
-        return shown  # the value is the given number
+        return shown
 
     return round_
 

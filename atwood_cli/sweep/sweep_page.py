@@ -114,7 +114,7 @@ class SweepPage:
 PULLEY = "critical_pulley_mass"
 MOST_SENTENCES = 6
 """The most points of a second range for each of which a sentence says the regimes."""
-ASSUMED = "mu is not given, so the string is assumed not to slip."
+ASSUMED = "Without mu, no slip is assumed."
 PULLEYS = "M is not given, so each row on the verge has its own critical pulley mass."
 
 
