@@ -18,6 +18,7 @@ from .options import (
     Named,
     SheetName,
     argument,
+    flag,
     option,
     scene_option,
     with_options,
@@ -98,7 +99,9 @@ def fit(
     from ..laboratory.report import report_of
 
     try:
-        best = fit_of(table, given, find or [], label or [], divided(without or []), column or [], sheet)
+        best = fit_of(
+            table, given, find or [], label or [], divided(without or []), column or [], sheet, flag
+        )
     except Unreadable as error:
         raise cannot_read(table, error) from None
     if picture is not None:

@@ -37,9 +37,9 @@ REMARKS = {
 }
 
 
-def flag(name: str) -> str:
-    """Return a name as an option is typed: mu_k is --mu-k. An argument is typed without a name."""
-    return name if name == "NAME" else f"--{name.rstrip('_').replace('_', '-')}"
+def flag(name: str, value: str = "") -> str:
+    """Return an option as it is typed: mu_k is --mu-k. An argument is typed without a name."""
+    return name if name == "NAME" else f"--{name.rstrip('_').replace('_', '-')} {value}".rstrip()
 
 
 def option(group: str, *flags: str, words: Callable[[], Mapping[str, str]] | None = None, **more: Any) -> Any:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any
 
-from ..numbers.text import naming_the_extra, sentence, without_blanks
+from ..numbers.text import naming_the_extra, without_blanks
 from ..reading.inputs import read_input
 from ..reading.names import divided
 from ..solver.scene import INPUTS, MASSES, Given, Input, SceneError
 from ..tables.sources import Unreadable
 from .results import Fit as Fit
+from .results import in_python
 
 if TYPE_CHECKING:
     from typing import Protocol
@@ -79,16 +80,13 @@ def fit(
 
     with naming_the_extra():
         from .report import results_of
-        from .statistics import CannotSeparate
 
     given = {"g": g, "M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "drop": drop}
     given |= {"m1": m1, "m2": m2, "hanger": hanger}
     names = [find] if isinstance(find, str) else find or ()
     left_out = divided([str(without)]) if isinstance(without, str | int) else without
     try:
-        return results_of(fit_of(runs, given, names, without=left_out, sheet=sheet), in_python=True)
-    except CannotSeparate as error:
-        raise ArithmeticError(sentence("".join(error.args), in_python=True)) from None
+        return results_of(fit_of(runs, given, names, without=left_out, sheet=sheet))
     except Unreadable as error:
         if isinstance(runs, str | PathLike):
             raise cannot_read(fspath(runs), Unreadable(str(error))) from None
@@ -103,10 +101,12 @@ def fit_of(
     without: Collection[int | str] = (),
     columns: Sequence[str] = (),
     sheet: str | None = None,
+    option: Callable[..., str] = in_python,
 ) -> Fitted:
     """Return the fit of a table, which may be "-" for stdin. Raises SceneError, Unreadable, CannotSeparate.
 
-    ``columns`` are words NAME=HEADING, ``labels`` headings that belong to no run.
+    ``columns`` are words NAME=HEADING, ``labels`` headings that belong to no run. ``option`` returns an
+    option as the user types it.
     """
     from ..tables.headings import read_named
     from .columns import VOCABULARY
@@ -120,7 +120,7 @@ def fit_of(
     if not {"g", "gravity"} & {*divided(find)}:
         shared.setdefault("g", inputs["g"])
     runs = read_runs(table, [*map(without_blanks, labels)], shared, without, named, sheet)
-    conditions = conditions_of({**inputs, **runs.same})
+    conditions = conditions_of({**inputs, **runs.same}, option)
     return fitted(runs, conditions, read_find(find, conditions))
 
 

@@ -65,12 +65,12 @@ def diagnosed(fit: Fitted, is_mixed: bool) -> Fitted:
     """
     cells, rows, clean, line = _far(fit)
     if is_mixed:
-        return fit._replace(outliers=_named(fit.runs, cells))
+        return fit._replace(outliers=_named(fit, cells))
     freed = [*_freed(clean)]
     causes = _repairs(clean, freed)
     if causes and line.chi2 >= _as_good(causes[0].line):
         rows = {}
-    outliers = _named(fit.runs, cells | rows)
+    outliers = _named(fit, cells | rows)
     words = _in_words(causes) or (_unseen_delay(clean, freed) if not outliers else "")
     also = ", which may explain outliers, too" if causes and rows else ""
     return fit._replace(outliers=outliers, causes=[f"{words}{also}"] if words else [])
@@ -81,7 +81,7 @@ def contradiction(fit: Fitted) -> str:
     cells, rows, *_ = _far(fit)
     with suppress(CannotSeparate):
         if (cells or rows) and _is_sound(_without(fit, cells | rows)):
-            return "; ".join(message for _, message in _named(fit.runs, cells | rows))
+            return "; ".join(message for _, message in _named(fit, cells | rows))
     held = np.flatnonzero(fit.used)[~moves(fit.data, fit.values)].tolist()
     if held:
         return f"{fit.runs.rows_in_words(*held)} would not move, as the fitted axle holds that; {CHECK}"
@@ -167,8 +167,8 @@ def _cause(freed: Fitted) -> str:
         unit, instead = QUANTITIES[name].unit, rounded(given.values.get(name, 0.0), 3)
         words = f"{what} is {published(value, u)[0]} {unit}, not {instead}"
     typed = [x for x in QUANTITIES[name].given_by if given.inputs[x].given is not None]
-    without = f"without `--{typed[0]}`: " if typed else ""
-    return f"{words} ({without}`--find {','.join(freed.names)}`)"
+    without = f"without {given.option(typed[0])}: " if typed else ""
+    return f"{words} ({without}{given.option('find', ','.join(freed.names))})"
 
 
 def _unseen_delay(fit: Fitted, freed: Sequence[Fitted]) -> str:
@@ -178,10 +178,10 @@ def _unseen_delay(fit: Fitted, freed: Sequence[Fitted]) -> str:
     late = "the runs cannot show whether all times are too long by a delay"
     for one in freed:
         if one.names[-1] == "delay":
-            u, find = one.line.u[-1], ",".join(one.names)
+            u, find = one.line.u[-1], fit.given.option("find", ",".join(one.names))
             if one.line.times * u <= WIDE_DELAY:
                 return ""
-            gives = f" (`--find {find}` gives {published(one.values['delay'], u)[0]} s)"
+            gives = f" ({find} gives {published(one.values['delay'], u)[0]} s)"
             late += gives if _is_plausible(one) else ""
     wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
     return f"{late}; the results assume none. {wider}"
@@ -225,9 +225,9 @@ def _without(fit: Fitted, far: Distances) -> Fitted:
     return best_fit(runs._replace(cells=[old.cells[i] for i in kept.tolist()]), used, fit.given, fit.names)
 
 
-def _named(runs: Runs, far: Distances) -> list[tuple[int, str]]:
+def _named(fit: Fitted, far: Distances) -> list[tuple[int, str]]:
     """Return outliers as runs with a message on each; what is wrong with a run or a row is named once."""
-    messages = dict[str, tuple[int, str]]()
+    runs, messages = fit.runs, dict[str, tuple[int, str]]()
     for place, distance in far.items():
         run, cell = int(runs.run[place]), runs.cells[place]
         of_run, row = np.flatnonzero(runs.run == run).tolist(), cell.split(":")[0]
@@ -240,7 +240,7 @@ def _named(runs: Runs, far: Distances) -> list[tuple[int, str]]:
         what = f"{in_words(*where)}{value} {'is' if len(where) == 1 else 'are'}"
         left_out = ",".join(map(str, where))
         why = f"{rounded(abs(distance))} standard deviations from what the others give"
-        way = f"if it is a mistake, leave it out: `--without {left_out}`"
+        way = f"if it is a mistake, leave it out: {fit.given.option('without', left_out)}"
         messages.setdefault(left_out, (run, f"{what} {why}; {way}"))
     return [*messages.values()]
 

@@ -217,10 +217,11 @@ def moves(data: Data, values: Mapping[str, float]) -> Selection:
 
 
 class Conditions(NamedTuple):
-    """The inputs that all runs share, with ``drop`` if they share it."""
+    """The inputs that all runs share, perhaps ``drop``, and how the user types an ``option``."""
 
     inputs: Mapping[str, Input]
     scene: Scene
+    option: Callable[..., str]
 
     @property
     def values(self) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """From runs to a result: values, uncertainties, outliers and causes, or why there is none."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
 from math import hypot
@@ -25,7 +25,7 @@ from .estimate import (
     of_forces,
     separates,
 )
-from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation
+from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, in_python
 from .runs import OUT_OF_RANGE, REACHES_0, Runs, Selection, behind_an_error, in_range
 from .statistics import CannotSeparate
 
@@ -41,13 +41,13 @@ NO_FIT = "no pulley explains these runs, whatever its inertia and its axle's fri
 # What is given, and what is to be fitted
 
 
-def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
+def conditions_of(inputs: Mapping[str, Input], option: Callable[..., str] = in_python) -> Conditions:
     """Return the conditions that inputs give. Raises SceneError."""
     for x, typed in inputs.items():
         if typed.given is not None and not in_range(typed):
             raise SceneError(x, typed.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
-    return Conditions(inputs, Scene.of({**inputs, **masses}))
+    return Conditions(inputs, Scene.of({**inputs, **masses}), option)
 
 
 def read_find(words: Sequence[str], given: Conditions) -> list[str]:
@@ -120,7 +120,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         fit = _with_results(runs, used, given, names)
     except CannotSeparate as error:
         more = behind_an_error([*remarks, *runs.doubts])
-        raise CannotSeparate(f"{''.join(error.args)}{more}") from None
+        raise CannotSeparate(f"{error}{more}") from None
     fit = diagnosed(fit._replace(shown=shown), is_mixed=bool(columns))
     causes, (low, high) = [*fit.causes], fit.results["gravity"].interval if "gravity" in names else EARTH
     if high < EARTH[0] or low > EARTH[1]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..explain.given import inputs_in_words
 from ..numbers.digits import format_number
-from ..numbers.text import counted, sentence
+from ..numbers.text import counted
 from ..output.forms import Report
 from ..output.page import Page
 from ..output.text import aligned, cell
@@ -101,15 +101,15 @@ def conditions(fit: Fitted) -> str:
 # Records and pages
 
 
-def notes_of(fit: Fitted, in_python: bool = False) -> tuple[list[str], list[str], list[str]]:
+def notes_of(fit: Fitted) -> tuple[list[str], list[str], list[str]]:
     """Return the verdict and warnings, how the runs were read and scatter, and what may be wrong in all."""
     messages = [message for _, message in fit.outliers], fit.causes
-    outliers, causes = ([f"{_capital(sentence(words, in_python))}." for words in some] for some in messages)
+    outliers, causes = ([f"{_capital(words)}." for words in some] for some in messages)
     doubts, remarks = (map(_capital, some) for some in (fit.runs.doubts, fit.runs.remarks))
     return [verdict(fit), *doubts, *outliers], [*remarks, _scatter(fit)], causes
 
 
-def results_of(fit: Fitted, in_python: bool = False) -> Fit:
+def results_of(fit: Fitted) -> Fit:
     """Return all of a fit by name, with its sentences: first the verdict and the warnings."""
     known = fit.data.varying != "value"
     unit, of_unit = ("kg", abs(fit.values["gravity"])) if fit.data.varying == "force" else ("s", 1.0)
@@ -124,7 +124,7 @@ def results_of(fit: Fitted, in_python: bool = False) -> Fit:
         between_runs=sqrt(fit.line.between) / of_unit if known and fit.line.dof else None,
         between_runs_unit=unit if known and fit.line.dof else None,
         runs=_records(fit),
-        notes=[*chain(*notes_of(fit, in_python))],
+        notes=[*chain(*notes_of(fit))],
     )
 
 

@@ -76,6 +76,11 @@ def rounded(value: float, digits: int = 2) -> str:
     return format_number(strip_zeros(to_digits(digits)(Fraction(value))))
 
 
+def in_python(option: str, value: str = "") -> str:
+    """Return an option as a program has it: find='axle,delay'."""
+    return f"{option}={value!r}" if value else option
+
+
 class Fit(NamedTuple):
     """The results of a fit by name; None if the runs do not determine a result.
 

@@ -15,7 +15,6 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import fdtrc, stdtr, stdtrit
 
-from ..numbers.text import sentence
 from .runs import Column, Places, Selection
 
 NORMAL_DOF = 1e8
@@ -29,10 +28,7 @@ LEAST_SHARE = 1e-4
 
 
 class CannotSeparate(ArithmeticError):
-    """The runs do not determine the quantities to be fitted; why is a message for `sentence`."""
-
-    def __str__(self) -> str:
-        return sentence("".join(self.args))
+    """The runs do not determine the quantities to be fitted."""
 
 
 class Line(NamedTuple):

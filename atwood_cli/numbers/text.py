@@ -1,6 +1,5 @@
 """Texts as messages show them."""
 
-import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 
@@ -13,22 +12,6 @@ LONGEST_NAME = 255
 def shortened(text: str, most: int = 60) -> str:
     """Return the text as a message shows it: if it is too long, only its beginning and its end."""
     return text if len(text) <= most else f"{text[: most - 20]}...{text[-10:]}"
-
-
-OPTION = re.compile(r"`--(\w+) ?(.*?)`")
-"""An option that a message names, with its value if it has one."""
-
-
-def sentence(message: str, in_python: bool = False) -> str:
-    """Return a message with its options as they are typed: --find a,b, or in Python find='a,b'."""
-
-    def typed(option: re.Match[str]) -> str:
-        name, value = option.groups()
-        if not in_python:
-            return option[0].strip("`")
-        return f"{name}={value!r}" if value else name
-
-    return OPTION.sub(typed, message)
 
 
 def in_quotes(value: object) -> str:
