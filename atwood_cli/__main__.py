@@ -36,6 +36,10 @@ def _status() -> int:
     for number in ENDING_SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
             signal.signal(number, end)
+    if sys.stdout and not sys.stdout.isatty():
+        # What fits in a pipe is one write, also with PYTHONUNBUFFERED: others may write to it.
+        sys.stdout = os.fdopen(1, "w", 1 << 16, sys.stdout.encoding, "replace", closefd=False)
+        sys.__stdout__ = sys.stdout  # type: ignore[misc]
     try:
         # The environment may allow fewer digits than we do.
         sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)

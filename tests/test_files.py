@@ -1,12 +1,21 @@
 """Files are there whole or not at all."""
 
 import os
+import socket
+import subprocess
+import sys
 from contextlib import suppress
+from itertools import count
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from atwood_cli import solve
 from atwood_cli.output.files import written_beside
+
+from .conftest import many
+from .tools.running import HANGS, around, process
 
 
 def test_an_error_leaves_all_as_it_was(tmp_path: Path) -> None:
@@ -87,3 +96,59 @@ def test_a_name_of_any_length_is_taken(tmp_path: Path, suffix: str) -> None:
     with written_beside(file) as beside:
         beside.write_text("whole")
     assert file.read_text() == "whole"
+
+
+# Several processes that share a pipe
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs sockets of Unix")
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize(
+    ("words", "outputs", "errors"),
+    [
+        ("solve --m1 1 --m2 3 --only a,T1", 1, 0),
+        ("solve --m1 1.0(1) --m2 3 --only a --budget", 1, 1),
+        ("solve --m1 1 --m2 3 --M 10 --explain", 1, 0),
+        ("sweep --m1 1 --m2 3 --M 1:9:200 --csv", 1, 1),
+        ("sweep --m1 1 --m2 3 --M 1:9:200 --json", 1, 0),
+        ("batch -", 1, 1),
+        ("quantities", 1, 0),
+        ("solve --m1 x", 0, 1),
+        ("-h", 1, 0),
+    ],
+    ids=count(),
+)
+def test_each_output_and_each_message_is_one_write(
+    words: str, outputs: int, errors: int, unbuffered: str
+) -> None:
+    """Lines of processes that ran side by side were torn, most under PYTHONUNBUFFERED, as in containers."""
+    ends: Any = [socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM) for _ in range(2)]  # a datagram a write
+    (out, stdout), (err, stderr) = ends
+    command = [sys.executable, "-m", "atwood_cli", *words.split()]
+    scene = b"m1,m2\n1,3\n"
+    subprocess.run(
+        command,
+        input=scene,
+        stdout=stdout,
+        stderr=stderr,
+        env=around({"PYTHONUNBUFFERED": unbuffered}),
+        timeout=HANGS,
+    )
+    for end, expected in ((out, outputs), (err, errors)):
+        end.setblocking(False)
+        messages = []
+        with suppress(BlockingIOError):
+            while True:
+                messages.append(end.recv(1 << 20))
+        assert len(messages) == expected
+        assert all(message.endswith(b"\n") for message in messages)
+    for end in (out, err, stdout, stderr):
+        end.close()
+
+
+def test_no_line_of_processes_side_by_side_is_torn() -> None:
+    most = many(200)
+    words = "-m atwood_cli solve --m1 1 --M 9 --only a --m2"
+    ran = process(shell=f'seq {most} | PYTHONUNBUFFERED=1 xargs -P 4 -n 1 "$PYTHON" {words}')
+    expected = [repr(solve(1, m2, M=9).acceleration) for m2 in range(1, most + 1)]
+    assert sorted(ran.out.splitlines()) == sorted("0" if a == "0.0" else a for a in expected)

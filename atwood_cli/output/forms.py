@@ -50,11 +50,17 @@ def _write_csv(report: Report) -> None:
         table.writerow(map(cell, record.values()))
 
 
+def _write_page(print_on: Callable[[Page], None], is_markdown: bool = False) -> None:
+    """Print on a page, which is written at once: others may write to the same pipe."""
+    with (page := Page(is_markdown=is_markdown)).console:
+        print_on(page)
+
+
 FORMS = {
     "json": Form(".json", "Print JSON.", _write_json, True),
     "csv": Form(".csv", "Print CSV, with a line of names first.", _write_csv, False),
     "markdown": Form(
-        ".md", "Print the page as Markdown.", lambda report: report.page(Page(is_markdown=True)), True, True
+        ".md", "Print the page as Markdown.", lambda report: _write_page(report.page, True), True, True
     ),
 }
 """The forms, by the name of their option. Without such an option a page is printed, or bare values."""
@@ -91,9 +97,9 @@ def show(report: Report, target: Destination) -> Sequence[str]:
             if any(report.bare):  # an empty line for each value that does not exist
                 print(*report.bare, sep="\n")
             if report.below:
-                report.below(Page())
+                _write_page(report.below)
         else:
-            report.page(Page())
+            _write_page(report.page)
         sys.stdout.flush()
     if target.file is not None:
         say_written(target.file)

@@ -23,7 +23,7 @@ def say(*messages: str) -> None:
 
             line = "\n".join(wrapped(line, get_terminal_size().columns))
         with suppress(OSError):  # there is nobody else to tell
-            print(line, file=sys.stderr)
+            sys.stderr.write(f"{line}\n")
 
 
 def say_written(file: str) -> None:
