@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from .batch.frames import solve_table as solve_table
     from .laboratory import Fit as Fit
     from .laboratory import fit as fit
+    from .solver.quantities import QUANTITIES as QUANTITIES
     from .solver.quantities import REGIMES as REGIMES
     from .solver.scene import Scene as Scene
     from .solver.scene import SceneError as SceneError
@@ -22,6 +23,7 @@ _HOMES = {
     **{"solve_table": "batch.frames", "REGIMES": "solver.quantities"},
     **dict.fromkeys(("Fit", "fit"), "laboratory"),
     **dict.fromkeys(("Scene", "SceneError"), "solver.scene"),
+    "QUANTITIES": "solver.quantities",
 }
 """The names that the package exports, and the modules that have them."""
 __all__ = [*_HOMES]

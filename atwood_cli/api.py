@@ -14,7 +14,7 @@ from .reading.answers import read_answers
 from .reading.inputs import read_digits
 from .reading.names import input_meant
 from .solver.answers import Answers
-from .solver.quantities import MEASURED_NAMES, QUANTITIES, STANDARD
+from .solver.quantities import MEASURED_NAMES, QUANTITIES, STANDARD, Regime
 from .solver.scene import Given, Scene
 
 
@@ -34,7 +34,7 @@ class Inputs(TypedDict, total=False):
     drop: Given | None
     time: Given | None
     speed: Given | None
-    find: str | None
+    find: Given | None  # a name; more, so that solve(**given) takes a dictionary of numbers
 
 
 T = TypeVar("T", float, Decimal)
@@ -54,21 +54,23 @@ def _described() -> str:
 class Solution(Generic[T]):
     __doc__ = f"""The state of a scene: floats, or Decimals if digits were asked for; None if undetermined.
 
-    ``scene`` has the inputs. ``regime`` is "no-slip", "verge" or "slip". ``notes`` give the reasons for the
-    regime, and for each value that is None. ``uncertainty`` has the standard uncertainty of every quantity
-    by name, to at most 15 digits, and is empty if all inputs are exact; an uncertainty is None, with a note,
-    if the value is missing with an input an uncertainty off. Each field is computed when it is first read.
+    ``scene`` has the inputs, exact and in SI units; `solve` takes its fields but ``motion`` and ``terms``
+    again. ``regime`` is "no-slip", "verge" or "slip". ``notes`` give the reasons for the regime, and for each
+    value that is None. ``uncertainty`` has the standard uncertainty of every quantity by name, to at most 15
+    digits, and is empty if all inputs are exact; an uncertainty is None, with a note, if the value is missing
+    with an input an uncertainty off. Each field is computed when it is first read.
 
     Forces are on the pulley, with x from the axle to the place where m1's string meets it, and y up.
-    Accelerations, torque and angles are positive when m2 descends. The quantities, with their units and the
-    paper's equations; those from ``{MEASURED_NAMES[0]}`` on follow from ``a`` or ``drop``, else are None:
+    Accelerations, torque and angles are positive when m2 descends. The quantities, with their units, which
+    ``atwood_cli.QUANTITIES[name].unit`` gives, too, and the paper's equations; those from
+    ``{MEASURED_NAMES[0]}`` on follow from ``a`` or ``drop``, else are None:
 
 {_described()}
     """
 
     scene: Scene
     notes: tuple[str, ...]
-    regime: str
+    regime: Regime
     acceleration: T | None
     tension_1: T | None
     tension_2: T | None
@@ -133,8 +135,8 @@ class Solution(Generic[T]):
         """Return all names, as a field has none in Python before it is read."""
         return [*object.__dir__(self), *self.__dataclass_fields__]
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return the record that ``--json`` prints, for `json`: Decimals are text, infinite values None."""
+    def to_dict(self, budget: bool = False) -> dict[str, Any]:
+        """Return the record of ``--json`` (and ``--budget``): Decimals are text, infinite values None."""
         from .output.scene_page import record
         from .output.text import cell
 
@@ -145,7 +147,7 @@ class Solution(Generic[T]):
                 return None if isinstance(value, float | Decimal) else value
             return typed if self._answers.digits or isinf(float(typed)) else float(typed)
 
-        return dict(plain(record(self._answers)))
+        return dict(plain(record(self._answers, budget=budget)))
 
     def __str__(self) -> str:
         """Return the page that ``atwood solve`` prints, without colours."""
@@ -198,9 +200,11 @@ def solve(
 def solve(
     m1: Mass = ..., m2: Mass = ..., *, digits: int | str, **given: Unpack[Inputs]
 ) -> Solution[Decimal]: ...
+@overload
 def solve(
-    m1: Mass = None, m2: Mass = None, *, digits: int | str | None = None, **given: Unpack[Inputs]
-) -> Any:
+    m1: Mass = ..., m2: Mass = ..., *, digits: Given | None = ..., **given: Unpack[Inputs]
+) -> Solution[Any]: ...
+def solve(m1: Mass = None, m2: Mass = None, *, digits: Any = None, **given: Unpack[Inputs]) -> Any:
     """Solve Atwood's machine: m1 and m2 on a rough string over a pulley.
 
     The inputs decide the model. Without M the pulley is massless; with mu and without M it is the pulley that
@@ -243,9 +247,13 @@ def solve(
     return Solution(read_answers(inputs, read_digits(digits)))
 
 
-_masses = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD, default=None) for name in ("m1", "m2")]
-_others = [
-    Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in (*Inputs.__annotations__, "digits")
+_kinds = dict.fromkeys(("m1", "m2"), Parameter.POSITIONAL_OR_KEYWORD)
+_types = {"find": "str | None", "digits": "int | str | None"}
+_parameters = [
+    Parameter(
+        x, _kinds.get(x, Parameter.KEYWORD_ONLY), default=None, annotation=_types.get(x, "Given | None")
+    )
+    for x in (*_kinds, *Inputs.__annotations__, "digits")
 ]
 # help() and editors show the inputs by this attribute, which type checkers do not know of a function.
-solve.__dict__["__signature__"] = Signature([*_masses, *_others])
+solve.__dict__["__signature__"] = Signature(_parameters, return_annotation="Solution")

@@ -45,7 +45,7 @@ def parameters(function: Callable[..., Any]) -> list[str]:
 PYTHON: dict[str, tuple[Iterable[str], str]] = {
     "atwood_cli": (
         atwood_cli.__all__,
-        "Solution solve STATUSES solve_arrays solve_table REGIMES Fit fit Scene SceneError",
+        "Solution solve STATUSES solve_arrays solve_table REGIMES Fit fit Scene SceneError QUANTITIES",
     ),
     "solve": (
         parameters(solve),

@@ -5,12 +5,13 @@ from copy import copy, deepcopy
 from dataclasses import fields
 from fractions import Fraction
 from pathlib import Path
+from pydoc import render_doc
 from runpy import run_path
 from typing import Any
 
 import pytest
 
-from atwood_cli import solve
+from atwood_cli import QUANTITIES, solve
 from atwood_cli.solver.machine import Machine
 
 from .tools.running import TOP, process
@@ -85,6 +86,29 @@ def test_a_solution_is_the_same_however_it_is_read(given: str) -> None:
     pickled = pickle.loads(pickle.dumps(solve(**inputs(given))))
     for other in (backwards, pickled, copy(pickled), deepcopy(backwards)):
         assert (repr(other), other, hash(other), str(other)) == (repr(s), s, hash(s), str(s))
+
+
+@pytest.mark.parametrize(
+    "given", ["mu=0.3", "M=inf mu=0.2", "M=2 wrap=270 R=0.1 axle=1", "M=1 I=0.02 R=0.1", "a=1"]
+)
+def test_the_fields_of_a_scene_make_it_again(given: str) -> None:
+    s = solve(**inputs(given))
+    again = solve(
+        **{name: value for name, value in s.scene._asdict().items() if name not in ("motion", "terms")}
+    )
+    assert again.scene._replace(motion=s.scene.motion) == s.scene
+    assert again.acceleration == s.acceleration
+
+
+def test_python_asks_for_the_budget_for_units_and_for_types() -> None:
+    s = solve("1.0(1)", 3, M="10(1)")
+    assert s.to_dict()["budget"] is None
+    assert s.to_dict(budget=True) == s.to_dict() | {"budget": s.to_dict(budget=True)["budget"]}
+    assert sum(s.to_dict(budget=True)["budget"]["acceleration"].values()) == pytest.approx(100)
+    assert (QUANTITIES["torque"].unit, QUANTITIES["mu_verge"].unit) == ("N m", "")
+    text = render_doc(solve)
+    assert "m1: 'Given | None' = None, m2: 'Given | None' = None, *, M: 'Given | None' = None" in text
+    assert "digits: 'int | str | None' = None) -> 'Solution'" in text
 
 
 def test_the_python_door_is_light_and_shells_complete_its_names_before_their_first_use() -> None:

@@ -52,8 +52,9 @@ def solve_arrays(
     """Solve arrays of scenes in doubles.
 
     An input is a number, a sequence, an array, or a column of polars or pandas. All are broadcast against
-    each other. An input is not given in rows where it is masked (`numpy.ma`), None, a null of polars, or NA
-    or NaN in a column of pandas. Any other NaN is an error of its row.
+    each other. A text is read as a number; units are for `solve` and `solve_table`. An input is not given in
+    rows where it is masked (`numpy.ma`), None, a null of polars, or NA or NaN in a column of pandas. Any
+    other NaN is an error of its row.
 
     Args:
         m1, m2: The masses, in kg.

@@ -12,7 +12,8 @@ class Undetermined(Exception):
     """
 
 
-REGIMES = ("no-slip", "verge", "slip")
+Regime = Literal["no-slip", "verge", "slip"]
+REGIMES: tuple[Regime, ...] = get_args(Regime)
 Accuracy = Literal["certified", "exact"]
 ACCURACIES: tuple[Accuracy, ...] = get_args(Accuracy)
 """The accuracies of arrays."""
