@@ -159,6 +159,32 @@ def test_a_zipapp_keeps_the_status(tmp_path: Path) -> None:
         assert (ran.returncode, bool(ran.stdout)) == (status, not status)
 
 
+NUMPY = """
+try:
+    import numpy._compiled
+except ImportError:
+    import os
+    os.listdir(os.path.dirname(__file__))
+"""
+"""A package with a compiled part that a zip file cannot give, which it looks for as NumPy does."""
+
+
+def test_a_zipapp_says_that_numpy_cannot_be_in_it(tmp_path: Path) -> None:
+    """It said that NumPy's folder could not be written."""
+    copytree(TOP / "atwood_cli", tmp_path / "app" / "atwood_cli")
+    (tmp_path / "app" / "numpy").mkdir()
+    (tmp_path / "app" / "numpy" / "__init__.py").write_text(NUMPY)
+    create_archive(tmp_path / "app", tmp_path / "atwood.pyz", main="atwood_cli.__main__:main")
+    ran = subprocess.run(
+        [sys.executable, tmp_path / "atwood.pyz", "fit", TOP / "examples" / "rit.csv"],
+        capture_output=True,
+        check=False,
+    )
+    why = b"No module named 'numpy._compiled'"
+    assert (ran.returncode, ran.stdout, ran.stderr[: len(why) + 8]) == (1, b"", b"atwood: " + why)
+    assert ran.stderr.endswith(b": what is compiled cannot be imported from a zip file\n")
+
+
 ENDING = """
 import atexit, gc, sys
 from atwood_cli.__main__ import main

@@ -161,6 +161,8 @@ def _why_not_written(error: OSError) -> str:
         return ""
     if isinstance(error, io.UnsupportedOperation):
         return "cannot write the output: stdout is closed"
+    if isinstance(error, NotADirectoryError) and isinstance(error.__context__, ImportError):
+        return f"{error.__context__}: what is compiled cannot be imported from a zip file"
     if error.errno is None:  # it is a sentence of ours
         return str(error)
     file = shortened(str(error.filename or "the output"), LONGEST_NAME)
