@@ -123,15 +123,66 @@ def test_a_frame_of_pandas_keeps_its_index_and_its_columns() -> None:
     assert "is not a number" in solved.loc[9, "error"]
 
 
+@pytest.mark.parametrize("m1", [[1.0, 2.0], [-1.0, -2.0], [1.0, nan], [], [None, None]], ids=count())
+def test_types_are_the_same_whatever_the_rows(tmp_path: Path, m1: list[float | None]) -> None:
+    """A frame without an error had a column of nulls for it, and a writer of chunks refused the next."""
+    usual = {
+        "regime": pl.String,
+        **dict.fromkeys(solve_table(TABLE).columns[6:-1], pl.Float64),
+        "error": pl.String,
+    }
+    frame = pl.DataFrame({"m1": m1, "m2": [3.0] * len(m1)}, {"m1": pl.Float64, "m2": pl.Float64})
+    for solved in (solve_table(frame), solve_table(frame.lazy()).collect()):
+        assert dict(solved.schema) == {"m1": pl.Float64, "m2": pl.Float64, **usual}
+    pd = pytest.importorskip("pandas")
+    solved = solve_table(pd.DataFrame({"m1": m1, "m2": 3.0}, dtype=float))
+    names = {pl.String: "string", pl.Float64: "float64"}
+    assert dict(solved.dtypes.map(str)) == {
+        "m1": "float64",
+        "m2": "float64",
+        **{x: names[usual[x]] for x in usual},
+    }
+    pytest.importorskip("pyarrow")
+    solved.to_parquet(tmp_path / "a.parquet")
+    assert dict(pl.read_parquet_schema(tmp_path / "a.parquet")) == {
+        "m1": pl.Float64,
+        "m2": pl.Float64,
+        **usual,
+    }
+
+
+def test_a_frame_of_dask_is_solved_when_it_is_computed() -> None:
+    """It ended in an AttributeError."""
+    pd = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    from_pandas = pytest.importorskip("dask.dataframe").from_pandas
+    frame = pd.DataFrame({"m1": [1.0, 2.0, -1.0, 1.0], "m2": 3.0, "mu": [nan, 0.3, 0.3, 0.3]})
+    lazy = solve_table(from_pandas(frame, npartitions=2), ["regime", "a"])
+    assert type(lazy).__module__.startswith("dask.")
+    right = solve_table(frame, ["regime", "a"])
+    assert lazy.compute().equals(right)
+    assert dict(lazy.dtypes) == dict(right.dtypes)
+    with pytest.raises(ValueError, match=r"^cannot read the table: it lacks m2; there are 'm1'$"):
+        solve_table(from_pandas(frame[["m1"]], npartitions=1))
+    for series in (frame["m1"], from_pandas(frame, npartitions=1)["m1"]):
+        with pytest.raises(
+            ValueError, match=r"^the table is of type Series; give a data frame of polars, pandas or dask$"
+        ):
+            solve_table(series)
+
+
+AGAIN = "it has columns with the names of results: 'error'; leave them out to solve a table of results again, or rename them"
+
+
 @pytest.mark.parametrize(
     ("table", "why"),
     [
-        *((table, f"the table is of type {type(table).__name__}; give a data frame of polars or pandas") for table in ([1], pl.Series([1]), TABLE.to_dict())),
+        *((table, f"the table is of type {type(table).__name__}; give a data frame of polars, pandas or dask") for table in ([1], pl.Series([1]), TABLE.to_dict())),
         (TABLE.with_columns(m2=True), "cannot read the table: column m2 holds Boolean, not numbers"),
         (TABLE.drop("m2"), "cannot read the table: it lacks m2; there are 'id', 'm1 (g)', 'M', 'x'"),
         (TABLE.rename({"M": "M (u)"}), f"cannot read the table: column 'M (u)' has the unit 'u'; it takes {', '.join([*UNITS['mass'], *UNITS['force']])}; rename it"),
         (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' may mean R (radius of the pulley); rename it"),
-        (TABLE.rename({"id": "error"}), "cannot read the table: column 'error' has the name of a result; rename it"),
+        (TABLE.rename({"id": "error"}), f"cannot read the table: {AGAIN}"),
     ],
 )  # fmt: skip
 def test_what_solve_table_refuses(table: Any, why: str) -> None:

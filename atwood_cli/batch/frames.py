@@ -1,4 +1,4 @@
-"""Frames of scenes: `solve_table` for frames of polars, eager and lazy.
+"""Frames of scenes: `solve_table` for frames of polars, eager and lazy, of pandas and of dask.
 
 An eager frame is solved by one call of `with_results`, in the caller's thread, with all its rows: pieces of
 2^20 rows go to a pool of `solve_arrays`. For a lazy frame polars calls `with_results` when it is collected:
@@ -37,21 +37,22 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
     """Append its results to each row of a table of scenes, as `atwood batch` does.
 
     Args:
-        table: A data frame of polars, eager or lazy, or of pandas, with a row for each scene. Its columns m1,
-            m2, M, mu and so on are inputs, in SI units and degrees, or in the unit of the heading, as
-            "m1 (g)". Other columns stay as they are. An input is not given where a value is missing; in
-            pandas, NaN is such a value. A NaN in polars is an error of its row, as a text that is no number.
+        table: A data frame of polars (a lazy one, too), pandas or dask, with a row for each scene. Its
+            columns m1, m2, M, mu and so on are inputs, in SI units and degrees, or in the unit of the
+            heading, as "m1 (g)". Other columns stay as they are. An input is not given where a value is
+            missing; in pandas, NaN is. A NaN in polars is an error of its row, as a text that is no number.
         quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, regime,
             acceleration, tension_1, tension_2, mu_verge, friction_force and critical_pulley_mass.
 
     Returns:
         A table of the same kind with the same rows. Behind the columns of that table it has
         a column for each quantity, the nearest double in SI units, null where a value does not exist or is
-        beyond the doubles; and ``error``, a sentence on each bad row, null in the others.
+        beyond the doubles; and ``error``, a sentence on each bad row, null in the others. Their types are
+        the same for any rows, or none: texts are strings, in pandas of the type "string".
 
     Raises:
         SceneError: A quantity is not known (a ValueError).
-        ValueError: The table is no frame of polars or pandas, lacks a mass, or has a column that could be
+        ValueError: The table is no frame of these, lacks a mass, or has a column that could be
             meant for an input, holds no numbers, or is named as a result.
         ImportError: polars is missing or too old.
     """
@@ -62,11 +63,14 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
     frame: Any = table
     wanted = Wanted(read_quantities(quantities))
     try:
-        if hasattr(frame, "iloc"):
-            return cast(Table, _solve_pandas(frame, wanted))
+        if hasattr(frame, "iloc") and hasattr(frame, "columns"):
+            if not hasattr(frame, "map_partitions"):
+                return cast(Table, _solve_pandas(frame, wanted))
+            meta = solve_table(frame._meta, quantities)
+            return cast(Table, frame.map_partitions(solve_table, quantities, meta=meta))
         if not isinstance(frame, pl.DataFrame | pl.LazyFrame):
             what = f"the table is of type {type(table).__name__}"
-            raise ValueError(f"{what}; give a data frame of polars or pandas")
+            raise ValueError(f"{what}; give a data frame of polars, pandas or dask")
         schema = frame.collect_schema()
         solve = partial(with_results, columns=read_columns(schema.names(), wanted), wanted=wanted)
         if isinstance(frame, pl.DataFrame):
@@ -90,14 +94,14 @@ def _solve_pandas(frame: Any, wanted: Wanted) -> Any:
             None if absent else cell if of_numbers else str(cell) for cell, absent in pairs
         ]
     results = solve_cells(pl.DataFrame(cells), columns, wanted, TableTally())
-    return frame.assign(
-        **{x.name: x.to_numpy() if x.dtype.is_float() else x.to_list() for x in results.iter_columns()}
-    )
+    texts = [x.name for x in results.iter_columns() if x.dtype == pl.String]
+    values = {x.name: x.to_list() if x.name in texts else x.to_numpy() for x in results.iter_columns()}
+    return frame.assign(**values).astype(dict.fromkeys(texts, "string"))
 
 
 def with_results(
     frame: "pl.DataFrame", columns: ReadColumns, wanted: Wanted, tally: TableTally | None = None
 ) -> "pl.DataFrame":
     """Return a frame of scenes with their results. Raises Unreadable for a column that holds no numbers."""
-    cells = frame.select(frame[heading.column].alias(heading.name) for heading in columns.headings)
+    cells = frame.select(frame[x.column].alias(x.name) for x in (*columns.headings, *columns.label))
     return frame.hstack(solve_cells(cells, columns, wanted, tally or TableTally()))
