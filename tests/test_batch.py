@@ -25,6 +25,7 @@ from atwood_cli.cli import run
 from atwood_cli.reading.units import UNITS
 from atwood_cli.tables import sources
 
+from .conftest import many
 from .tools.running import FROM, HANGS, TOP, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
 
 TEXT = "m1,m2\n1,3\n"
@@ -106,7 +107,7 @@ def test_a_pipe_of_ndjson_is_answered_row_by_row() -> None:
         assert child.stdin
         assert child.stdout
         masses = [f'"m1":1,"m2":{m2}' for m2 in range(4)]
-        wrong = "'x' is not a line of NDJSON: Expecting value at character 1"
+        wrong = "line 1: 'x' is not a line of NDJSON: Expecting value at character 1"
         answers = {"x": f'{{"unreadable":"x","regime":null,"error":"{wrong}"}}'}
         answers |= {f"{{{row}}}": f'{{{row},"regime":"no-slip","error":null}}' for row in masses}
         *first, last = answers
@@ -179,25 +180,38 @@ def test_what_is_wrong_with_rows_that_are_alike_is_found_once(batch: Batch) -> N
     assert why.call_count == len({*errors_of(ran)} - {""}) == 2
 
 
-def test_a_key_that_is_refused_later_says_where(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A slow pipe had its first row answered, and the table refused as if it were not."""
-    rows = '{"m1":1,"m2":3}\n{"m1":1,"m2":3,"error":"x"}\n'
-    why = "column 'error' has the name of a result; rename it"
-    assert batch(rows, "--only a", "in.ndjson") == (1, "", f"atwood: cannot read IN: {why}\n")
-    monkeypatch.setattr(sources, "BLOCK_BYTES", 8)
-    answered = '{"m1":1,"m2":3,"acceleration":4.903325,"error":null}\n'
-    assert batch(rows, "--only a", "in.ndjson") == (
-        1,
-        answered,
-        f"atwood: cannot read IN: {why} (after 1 row)\n",
+def test_one_bad_line_of_ndjson_is_one_bad_row(batch: Batch, tmp_path: Path) -> None:
+    """The key error in line 500,001 ended the stream, and 21,573 good rows before it were lost."""
+    most, bad = (
+        many(1_000_000),
+        {"[1]", '{"m1":1,"error":"x"}', '{"id":7,"radius":2}', '{"Mass":1}', '{"m1":1,"m1":2}'},
     )
+    lines = [f'{{"id":{i},"m1":1,"m2":{i % 7}}}' for i in range(most)]
+    places = dict(zip(sorted(Random(4).sample(range(1, most), 5)), sorted(bad), strict=True))
+    for i, line in places.items():
+        lines[i] = line
+    ran = batch("\n".join(lines), "--only a -o OUT.ndjson", "in.ndjson")
+    assert (ran.status, f"{most} rows: {most - 5} no-slip" in ran.err) == (1, True)
+    for i, line in enumerate((tmp_path / "out.ndjson").read_text().splitlines()):
+        assert line.startswith((lines[i][:-1], '{"unreadable":') if i in places else lines[i][:-1])
+        assert (f'"error":"line {i + 1}: ' in line) == (i in places) == ('"error":null' not in line)
+    assert i + 1 == most
+
+
+@pytest.mark.parametrize(
+    "first", ['{"m1":1,"m2":3,"error":"x"}', '{"m1":1,"m2":3,"radius":1}', '{"Mass":1,"m2":3}']
+)
+def test_what_is_refused_in_a_heading_is_refused_in_the_first_line(batch: Batch, first: str) -> None:
+    ran = batch(f'[1]\n{first}\n{{"m1":1,"m2":3}}\n', "--only a", "in.ndjson")
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err.startswith(("atwood: cannot read IN: column", "atwood: cannot read IN: it has columns"))
 
 
 def test_the_first_error_is_that_of_the_whole_table(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sources, "BLOCK_BYTES", 8)
     table = "m1,m2\n" + "1,3\n" * 9 + "1,x\n" + "1,3\n" * 8 + "3,1\n1,y\n"
     ran = batch(table, "--only regime --expect a>0")
-    assert "atwood: in row 19: expected a>0; it is -4.9" in ran.err
+    assert "atwood: row 19: expected a>0; it is -4.9" in ran.err
     said = "atwood: 20 rows: 18 no-slip; 2 errors.\natwood: first error, in row 10: m2 'x' is"
     assert ran.err.startswith(said)
 

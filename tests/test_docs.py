@@ -146,6 +146,12 @@ def test_the_makefile_keeps_no_table_in_which_a_row_failed(tmp_path: Path) -> No
         (tmp_path / "scenes.csv").write_text(f"m1,m2\n1,{mass}\n")
         ran = process(shell=f'PATH="$(dirname "$PYTHON"):$PATH" make --always-make -C "{tmp_path}"')
         assert (ran.status, (tmp_path / "results.csv").exists()) == (status, not status), ran
+    (tmp_path / "cases.csv").write_text("m1,m2,M,mu\n1,3,10,0.2\n")
+    ran = process(shell=f'PATH="$(dirname "$PYTHON"):$PATH" make -C "{tmp_path}" judged.csv')
+    assert (ran.status, (tmp_path / "judged.csv").read_text().splitlines()[1]) == (
+        2,
+        "1,3,10,0.2,0.971685949492679,false,",
+    )
 
 
 @pytest.mark.parametrize("name", PAGES)

@@ -30,7 +30,7 @@ NAMED = {
         r"^(uncertainty|budget)\.\w+": r"\1.QUANTITY",
         r"^(budget\.QUANTITY|terms)\.\w+": r"\1.INPUT",
     },
-    "sweep": {rf"^(rows\[\])\.{INPUT}$": r"\1.INPUT", r"^(rows\[\])\.[a-z]\w+": r"\1.QUANTITY"},
+    "sweep": {rf"^(rows\[\])\.{INPUT}$": r"\1.INPUT", r"^(rows\[\])\.(?!expected)[a-z]\w+": r"\1.QUANTITY"},
     "contact": {r"^balance\.(friction|normal|sum|resultant|residual)": "balance.FORCE"},
     "fit": {r"^(uncertainty|interval)\.\w+": r"\1.RESULT"},
 }
@@ -45,7 +45,11 @@ PRINTED = {
         "--m1 1 --M 10 --a 2 --inertia hoop",
         "--m1 20N --M 1 --R 5cm --speed 40rad/s --time 2",
     ],
-    "sweep": ["--m1 1 --m2 3 --M 1,inf", "--m1 1 --m2 3 --mu 0.3 --wrap 1rad:2rad:2 --g 1:2:2 --only regime"],
+    "sweep": [
+        "--m1 1 --m2 3 --M 1,inf",
+        "--m1 1 --m2 3 --M 1,inf --mu 9 --expect no-slip",
+        "--m1 1 --m2 3 --mu 0.3 --wrap 1rad:2rad:2 --g 1:2:2 --only regime",
+    ],
     "contact": ["--m1 1 --m2 3 --mu 0.3", "--m1 1 --m2 3 --M inf --R 1 --axle 1N --points 2"],
     "fit": ["{rit} --drop 98cm", "{labelled} --R 1 --g 9.8"],
 }

@@ -101,14 +101,14 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
     wanted = job.wanted
     table = Csv(blocks_of(source), lambda columns: recognised(columns, VOCABULARY, wanted.named))
     columns = read_columns(table.columns, wanted)
-    pieces = table.pieces(columns.headings)
+    pieces = table.pieces([*columns.headings, *columns.label])
     first = [*islice(pieces, 1)]
-    in_first = ((piece.cells.iter_rows(), range(piece.cells.width)) for piece in first)
+    in_first = ((piece.cells.iter_rows(), range(len(columns.headings))) for piece in first)
     columns = columns._replace(comma=any(decimal_commas_in(*cells, table.separator) for cells in in_first))
     units = _units(wanted) if job.markdown else {}
-    names = [f"{x} ({units[x]})" if x in units else x for x in wanted.names]
+    names = [f"{x} ({units[x]})" if x in units else x for x in wanted.columns]
     rows = BytesIO() if job.markdown else target
-    rows.write(f"{table.separator.join([table.header, *names, ERROR])}{table.line_end}".encode())
+    rows.write(f"{table.separator.join([table.header, *names])}{table.line_end}".encode())
     with _watched(chain(first, pieces), job, source) as watched:
         for piece in watched:
             results = solve_cells(piece.cells, columns, wanted, tally, piece.errors)
@@ -151,9 +151,9 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
     def headings(keys: Sequence[str]) -> Sequence[Heading]:
         nonlocal columns
         columns = read_columns(keys, wanted, whole=False)
-        return columns.headings
+        return [*columns.headings, *columns.label]
 
-    with _watched(read_ndjson(blocks_of(source), headings), job, source) as watched:
+    with _watched(read_ndjson(blocks_of(source), headings, wanted.columns), job, source) as watched:
         for piece in watched:
             target.write(_ndjson(piece, solve_cells(piece.cells, columns, wanted, tally, piece.errors)))
             target.flush()

@@ -12,7 +12,7 @@ from unicodedata import normalize
 
 from ..explain.conditions import Condition, failures_of
 from ..explain.messages import LIKE_RADIANS, reasons_in
-from ..explain.tally import Tally
+from ..explain.tally import EXPECTED, Tally
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import NO_UNCERTAINTY, read_exactly
@@ -77,13 +77,19 @@ class Wanted(NamedTuple):
     given: Mapping[str, str] = {}
     digits: int | None = None
 
+    @property
+    def columns(self) -> list[str]:
+        """Return the names of the columns that are appended."""
+        return [*self.names, *([EXPECTED] if self.conditions else []), ERROR]
+
 
 class ReadColumns(NamedTuple):
-    """The columns of inputs, the headings of all that are not read, and whether commas are decimal."""
+    """The columns of inputs, headings not read, whether commas are decimal, the column that names rows."""
 
     headings: Sequence[Heading]
     not_read: Sequence[str] = ()
     comma: bool = False
+    label: Sequence[Heading] = ()
 
 
 # Columns
@@ -94,8 +100,9 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
 
     Raises Unreadable if a column has the name of a result, or may mean an input and is no label.
     """
-    if clash := [column for column in columns if column in (*wanted.names, ERROR)]:
-        raise Unreadable(f"column {in_quotes(clash[0])} has the name of a result; rename it")
+    if clash := [column for column in columns if column in wanted.columns]:
+        names = f"{listed(clash)}; leave them out to solve a table of results again, or rename them"
+        raise Unreadable(f"it has columns with the names of results: {names}")
     known = {without_blanks(column): column for column in columns}
     labels = {known.get(x, x) for x in divided(map(without_blanks, wanted.labels), known)}
     named = {known.get(without_blanks(column), column): name for column, name in wanted.named.items()}
@@ -114,7 +121,9 @@ def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> 
     not_read = [column for column in columns if column not in read]
     for column in not_read:
         _check_unread(column, inputs if whole else ())  # in NDJSON, another row may lack an input
-    return ReadColumns([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
+    has_label = wanted.conditions and columns and all(heading.place for heading in headings)
+    label = [Heading(0, columns[0], LABEL)] if has_label else []
+    return ReadColumns([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read, label=label)
 
 
 def _check_unread(column: str, inputs: Collection[str]) -> None:
@@ -146,6 +155,7 @@ def _meant(column: str) -> str:
 # Rows
 
 
+LABEL = "label"
 BEYOND, LIKE, UNLIKE = "beyond the doubles", "like radians", "unlike radians"
 
 
@@ -162,11 +172,13 @@ class TableTally(Tally):
         results: "pl.DataFrame",
         reasons: Mapping[tuple[str, str], int],
         failures: Mapping[int, Mapping[str, str]],
+        labels: Sequence[object],
         counts: Mapping[str, int],
     ) -> None:
-        """Count the next rows by their results, ``failures`` by the places of rows."""
+        """Count the next rows by their results, and what fails in them by their places."""
         for row, failing in sorted(failures.items()):
-            self.count_failures(f"in row {self.rows + row + 1}", failing)
+            name = f" {in_quotes(str(labels[row]))}" if labels[row] else ""
+            self.count_failures(f"row {self.rows + row + 1}{name}", failing)
         errors = results[ERROR]
         if errors.count() and not self.first_error:
             row = errors.is_not_null().arg_max() or 0
@@ -195,7 +207,11 @@ class TableTally(Tally):
         bare = (x for x in MASSES if self.counts[x])
         lines += [f"{x} is in kg; for a weight give its unit, as {x} (N)." for x in bare]
         lines += [f"first error, in {self.first_error}"] if errors else []
-        return [*lines, *self.failures()]
+        expected = " and ".join(condition.typed for condition in self.expected)
+        if expected and (errors or not self.rows):
+            unsolved = f"{errors} of {counted(self.rows, 'row')} could not be solved, so do not meet"
+            lines.append(f"{unsolved if errors else 'no row was judged; expected'} {expected}")
+        return [*lines, *self.failures_said()]
 
 
 def solve_cells(
@@ -212,6 +228,8 @@ def solve_cells(
     """
     import polars as pl
 
+    labels = cells[LABEL].to_list() if columns.label else [""] * cells.height
+    cells = cells.select(heading.name for heading in columns.headings)
     as_texts = pl.selectors.decimal() | pl.selectors.by_dtype(pl.Categorical, pl.Enum)
     cells = cells.with_columns(as_texts.cast(pl.String))
     exact = {x: read_exactly(x, wanted.given.get(x)) for x in INPUTS}
@@ -219,22 +237,24 @@ def solve_cells(
     doubles, singles = _doubles(cells, columns)
     if None in shared.values():  # an option that is no double
         singles = {*range(cells.height)}
-    rows = pl.int_range(cells.height, eager=True)
+    rows, together = pl.int_range(cells.height, eager=True), doubles
     if unread or singles:
         rows = rows.filter(~rows.is_in([*unread, *singles]))
+        together = doubles[rows]
     # No row is left here beside an option that is no double.
-    given: Any = doubles[rows].to_dict() | {x: double or 0.0 for x, double in shared.items()}
-    values, reasons = _solve_together(given, columns, wanted.names)
+    given: Any = together.to_dict() | {x: double or 0.0 for x, double in shared.items()}
+    values, is_valid, reasons = _solve_together(given, columns, wanted.names)
     values = values.with_columns(row=rows)
-    singles |= {*values.filter(pl.col(ERROR).is_not_null())["row"]}
-    values = values.filter(pl.col(ERROR).is_null())
+    if not is_valid.all():
+        values, singles = values.filter(is_valid), singles | {*rows.filter(~is_valid)}
     failures = _judge(doubles, values["row"], columns, shared, wanted.conditions)
     records: list[dict[str, Any]] = [{"row": row, ERROR: error} for row, error in unread.items()]
     solve = cache(partial(_solve_row, columns, exact, wanted))  # as many rows may be alike
     for row in singles - unread.keys():
-        record, lacking, failures[row] = solve(cells.row(row))
+        record, lacking, why = solve(cells.row(row))
         records.append({"row": row, **record})
         reasons.update(lacking)
+        failures |= {row: why} if why else {}
     if records:
         values = pl.concat([values, pl.DataFrame(records, values.schema)]).sort("row")
     numbers = pl.selectors.float()
@@ -244,23 +264,25 @@ def solve_cells(
         to_digits = f"{{:.{wanted.digits - 1}e}}".format
         results = results.with_columns(numbers.map_elements(lambda x: float(to_digits(x)), pl.Float64))
     hints = _hints(cells, columns, exact, given.get("wrap"), len(singles))
-    tally.add(results, reasons, failures, {BEYOND: beyond, **hints})
-    return results.select(*wanted.names, ERROR)
+    tally.add(results, reasons, failures, labels, {BEYOND: beyond, **hints})
+    fails = pl.int_range(pl.len()).is_in([*failures]) | pl.col(ERROR).is_not_null()
+    return results.with_columns(fails.not_().alias(EXPECTED)).select(wanted.columns)
 
 
 def _solve_together(
     given: Mapping[str, Any], columns: ReadColumns, names: Sequence[str]
-) -> "tuple[pl.DataFrame, Counter[tuple[str, str]]]":
-    """Return the results of rows of doubles, those of bad rows with an error, and why results are missing."""
+) -> "tuple[pl.DataFrame, pl.Series, Counter[tuple[str, str]]]":
+    """Return the results of rows of doubles, whether these are valid, and why results are missing."""
     import polars as pl
 
     from ..arrays import VALID, solve_and_count
 
     terms = {heading.name: heading.read.terms for heading in columns.headings if heading.read.terms}
     solved, reasons = solve_and_count(given, "exact", ["regime", *names], terms)
+    is_valid = pl.Series(solved.pop("status")) == VALID
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
-    error = pl.when(pl.col("status") != VALID).then(pl.lit("not valid")).alias(ERROR)
-    return pl.DataFrame({**solved, "regime": regimes}).with_columns(error).drop("status"), reasons
+    values = pl.DataFrame({**solved, "regime": regimes}).with_columns(pl.lit(None, pl.String).alias(ERROR))
+    return values, is_valid, reasons
 
 
 def _judge(
@@ -274,7 +296,7 @@ def _judge(
     in_si = ReadColumns([x._replace(unit="", read=Unit(terms=x.read.terms)) for x in columns.headings])
     inputs = {x: read_exactly(x, shared.get(x)) for x in INPUTS}
     judge = cache(lambda row: failures_of(_answers(in_si, inputs, row), conditions))
-    return {row: judge(doubles.row(row)) for row in rows} if conditions else {}
+    return {row: why for row in rows if (why := judge(doubles.row(row)))} if conditions else {}
 
 
 def _hints(

@@ -78,7 +78,8 @@ is an error. Piped rows are solved as they come. Cells become doubles in SI unit
 1/10, so last digits may differ. A row with a unit or radians in a cell is solved by itself, exactly as typed.
 
 The usual seven results are {", ".join(STANDARD)}.
-The exit status is 1 if a row has an error, or if a quantity that --only names has no value in any row.
+The exit status is 1 if a row has an error, if a quantity that --only names has no value in any row, or
+if there is no row or one that does not meet what is expected. In NDJSON a bad line is a bad row.
 """
 
 
@@ -117,7 +118,7 @@ def batch(
     named = read_named(column or (), VOCABULARY)
     wanted = Wanted(asked or STANDARD, label or (), named, conditions, shared, rounded_to)
     job = Job(table, kind, output, force, wanted, sheet, markdown)
-    tally = TableTally(asked)
+    tally = TableTally(asked, conditions)
     try:
         remarks = run_batch(job, tally)
     except KeyboardInterrupt:
@@ -129,4 +130,5 @@ def batch(
     say(*remarks, *tally.lines())
     errors = tally.counts[ERROR]
     missing = tally.missing and tally.rows > errors
-    return COULD_NOT if missing or tally.failed or (errors and not allow_errors) else DONE
+    unmet = conditions and (tally.failures or errors or not tally.rows)
+    return COULD_NOT if missing or unmet or (errors and not allow_errors) else DONE

@@ -55,7 +55,7 @@ Examples:
   atwood solve --m1 '55.0(1)g' --m2 60+-0.1g --a 0.380 --R 5cm
   atwood solve --m1 1 --m2 3 --M 10 --mu 0.3 --explain
 
-Any number may carry its uncertainty. For hoists see examples/hoist.md.
+Any number may carry its uncertainty. A sheave whose brake is set is --M inf; a safety_factor below 1 slips.
 """
 
 
@@ -103,4 +103,6 @@ def solve(
     aside = [*show(report, target), *(reasons(answers.to_six_digits, names) if explain else [])]
     failures = [why for condition in conditions if (why := failure(answers, condition))]
     say(*aside, *failures)
-    return COULD_NOT if "" in values or failures else DONE
+    judged = {condition.name for condition in conditions}  # some conditions hold for one without a value
+    lacking = {name for name, value in zip(names, values, strict=True) if not value} - judged
+    return COULD_NOT if lacking or failures else DONE

@@ -57,5 +57,5 @@ def sweep(
             say(f"stopped after {done} of {counted(swept.total, 'row')}")
         raise
     tally = swept_page.tally
-    say(*aside or [f"{name} has no value in any row" for name in tally.missing], *tally.failures())
-    return COULD_NOT if tally.missing or tally.failed else DONE
+    say(*aside or [f"{name} has no value in any row" for name in tally.missing], *tally.failures_said())
+    return COULD_NOT if tally.missing or tally.failures else DONE

@@ -9,7 +9,7 @@ from itertools import groupby
 from ..explain.conditions import Condition
 from ..explain.given import VERSION, scene_record
 from ..explain.messages import on_units, unmarked
-from ..explain.tally import Tally
+from ..explain.tally import EXPECTED, Tally
 from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
 from ..output.page import Page, progress
 from ..output.text import aligned, cell
@@ -27,7 +27,7 @@ class SweepPage:
         self, sweep: Sweep, names: Sequence[str], digits: int | None, conditions: Sequence[Condition] = ()
     ) -> None:
         self.sweep, self.digits, self.conditions = sweep, digits, conditions
-        self.tally = Tally(names)
+        self.tally = Tally(names, conditions)
         """The counts of the rows that are solved and, as JSON or CSV, written."""
         self.names = names or STANDARD
         # If a sentence says the regimes, they have a column only if it is asked for.
@@ -72,7 +72,8 @@ class SweepPage:
         # Without the bar, into which rows on a terminal would run.
         for row in self._rows(self.names, self.digits, watch=not sys.stdout.isatty()):
             points = {range_.name: range_.printed(row.at[range_.name]) for range_ in self.sweep.ranges}
-            yield points | {name: row.values[name] for name in self.names}
+            judged = {EXPECTED: not row.failures} if self.conditions else {}
+            yield points | {name: row.values[name] for name in self.names} | judged
 
     def print(self, page: Page, table: bool = True) -> None:
         """Print the scene, its regimes, values that all rows share, and the notes.
