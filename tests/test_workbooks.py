@@ -219,7 +219,7 @@ TIME = (
         (FLOAT % ("percentage", "0.021", "2 %"), "2.1 %"),
         (FLOAT % ("percentage", "0.021", ""), "2.1%"),
         (FLOAT % ("float", "2", "2%"), "2%"),
-        (FLOAT % ("currency", "2", ""), "2 shown as General¤"),
+        (FLOAT % ("currency", "2", ""), "2 shown as ¤"),
         (TIME % ("PT1H2M3.5S", "01:02:03,5"), "3723.5 s"),
         (TIME % ("-PT90S", ""), "-90 s"),
         (TIME % ("P1DT2H", ""), "93600 s"),

@@ -53,14 +53,12 @@ Rule = tuple[str, int, str, float]
 """How a section shows numbers: behind a sign, times a factor, with a unit; a clock up to so many seconds."""
 
 
-@lru_cache(1024)
 def _sections(code: str) -> list[str]:
     """Return the sections of a number format, none if it cannot be divided, or has conditions."""
     sections = _DIVIDED.findall(f"{code};")
     return sections if ";".join(sections) == code and not _CONDITION.search(code) else []
 
 
-@lru_cache(1024)
 def _rule(section: str) -> Rule | None:
     """Return how a section shows numbers, None if that is not wholly understood or may show nothing."""
     if not (match := _SECTION.fullmatch(section)):
@@ -86,14 +84,14 @@ def is_shown_unit(text: str) -> bool:
     return text.strip() in ("", PERCENT) or bool(symbol_of(text.strip()))
 
 
-def _rule_for(value: float, code: str) -> Rule | None:
-    """Return the rule by which a format shows a number, if it is understood and shows the right sign."""
-    positive, negative, zero, *_ = [*map(_rule, _sections(code)), None, None, None]
-    count = len(_sections(code))
-    if value < 0 and count > 1:
-        return negative if negative and negative[0] == "-" else None
-    rule = zero if value == 0 and count > 2 else positive
-    return rule if rule and (not rule[0] or (rule[0] == "+" and value >= 0)) else None
+@lru_cache(1024)
+def _rule_for(order: int, code: str) -> Rule | None:
+    """Return the rule by which a format shows numbers above 0 (1), 0 or below (-1), if it shows their sign."""
+    rules = [*map(_rule, _sections(code))]
+    has_own = len(rules) > 1 and order < 0
+    rule = (rules or [None])[1 if has_own else 2 if len(rules) > 2 and order == 0 else 0]
+    signs = ("-",) if has_own else ("",) if order < 0 else ("", "+")
+    return rule if rule and rule[0] in signs else None
 
 
 def shown_number(stored: str, code: str) -> str:
@@ -101,7 +99,7 @@ def shown_number(stored: str, code: str) -> str:
     value = _finite(stored)
     if code in PLAIN:
         return f"{value + 0.0:.15g}"
-    if rule := _rule_for(value, code):
+    if rule := _rule_for((value > 0) - (value < 0), code):
         _, factor, unit, turn = rule
         if not turn:
             return f"{value * factor + 0.0:.15g}{unit}"
@@ -113,11 +111,12 @@ def shown_number(stored: str, code: str) -> str:
 
 def shown_text(text: str, code: str) -> str:
     """Return a text, with its format if that shows more than the text or less."""
+    if not text or code in PLAIN:
+        return text
     sections = _sections(code)
     is_plain = "@" not in code and len(sections) < SECTION_OF_TEXTS
-    if not text or is_plain or (sections and _TEXT_SECTION.fullmatch(sections[-1])):
-        return text
-    return f"{text}{SHOWN_AS}{code}"
+    is_plain |= bool(sections) and bool(_TEXT_SECTION.fullmatch(sections[-1]))
+    return text if is_plain else f"{text}{SHOWN_AS}{code}"
 
 
 def agreed(value: str, shown: str) -> str:

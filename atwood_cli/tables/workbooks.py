@@ -32,8 +32,6 @@ TOO_MANY = f"it has more than {MOST_CELLS >> 20} million cells"
 TRUE = ("1", "true")
 VISIBLE = "visible"
 CELLS = ("table-cell", "covered-table-cell")
-WITHOUT_TEXT = {"float": GENERAL, "percentage": "0%", "currency": "General¤"}
-"""The formats of numbers in .ods that have no text, by their types; that of money is not understood."""
 _ESCAPED = re.compile("_x(000[9AaDd]|00[2-7][0-9A-Fa-f])_")
 """A tab, a line break, or a sign of ASCII in the texts of .xlsx."""
 
@@ -98,18 +96,14 @@ def workbook_as_csv(file: IO[bytes], name: str | None) -> tuple[bytes, list[str]
     counts = {"hidden row": len(grid.hidden_rows & rows.keys()), "hidden column": len(columns)}
     if any(counts.values()):
         remarks.append(f"{' and '.join(counted(n, thing) for thing, n in counts.items() if n)}, too")
-    lines = ([rows[number].get(column, "") for column in range(width)] for number in sorted(rows))
-    return _as_csv(lines), remarks
-
-
-def _as_csv(rows: Iterable[list[str]]) -> bytes:
     buffer = StringIO()
     plain = csv.writer(buffer, lineterminator="\n")
     quoted = csv.writer(buffer, lineterminator="\n", quoting=csv.QUOTE_ALL)
-    for cells in rows:
+    for number in sorted(rows):
+        cells = [rows[number].get(column, "") for column in range(width)]
         is_like_comment = cells[0].lstrip().startswith("#")  # an error, as #DIV/0!
         (quoted if is_like_comment else plain).writerow(cells)
-    return buffer.getvalue().encode()
+    return buffer.getvalue().encode(), remarks
 
 
 def _unmerged(
@@ -329,7 +323,7 @@ def _shown_in_ods(cell: Mapping[str, str], shown: str) -> str:
         case "float" | "currency" | "percentage" as kind:
             if shown.strip():
                 return agreed(cell["value"], shown.strip())
-            return shown_number(cell["value"], WITHOUT_TEXT[kind])
+            return shown_number(cell["value"], {"float": GENERAL, "percentage": "0%"}.get(kind, "¤"))
         case "time":
             return duration(cell["time-value"], shown)
         case "date":
