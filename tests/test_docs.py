@@ -88,6 +88,7 @@ def test_what_ends_otherwise_is_not_written_unasked() -> None:
 
 def test_a_value_that_the_oracle_denies_is_not_written() -> None:
     """A wrong value of a fall passed once it was accepted."""
+    assert [*denied("$ atwood solve --m1 1 --m2 3\nnote: torque = 1 N m.\n")]  # it has none without R
     for words in ("", " --json", " --only T1,fall_time", " --markdown | grep T", " --digits 3"):
         right = answered(f"$ atwood solve --m1 1 --m2=3 --M 10 --drop 2{words}")
         assert "11.9" in right or "12.0" in right

@@ -25,8 +25,6 @@ from .tools.doors import DOUBLES, TEXTS, Door, solve_any, within_promise
 from .tools.regenerate import CASES, KEPT, essence
 from .tools.scenes import DANGERS, FAMILIES, MEASURED, ON_AN_AXLE, Given, as_doubles, scenes
 
-BOUNDS = ("friction_force_min", "friction_force_max")
-"""They have no closed form: test_contact checks those of `solve`, with which the other doors must agree."""
 USUAL = [f"{family}{axle}" for axle in ("", ON_AN_AXLE) for family in FAMILIES]
 INFINITE = (inf, -inf)
 
@@ -54,7 +52,7 @@ def check(door: Door, tried: Sequence[Given], truths: Sequence[Mapping[str, Any]
 
 def truth(given: Given) -> dict[str, Any]:
     found = oracle.expected(read_answers(given, None).decided.scene)
-    return {name: value for name, value in found.items() if name not in BOUNDS}
+    return {name: value for name, value in found.items() if name not in oracle.BOUNDS}
 
 
 def count_of(family: str) -> int:
@@ -90,7 +88,7 @@ def test_values_of_doubles(family: str) -> None:
     tried[::2] = [{name: text for name, text in row.items() if name != "g"} for row in tried[::2]]
     truths = [truth(given) for given in tried]
     for given, found in zip(tried, truths, strict=True):
-        one = {name: getattr(solve_any(**given), name) for name in BOUNDS}
+        one = {name: getattr(solve_any(**given), name) for name in oracle.BOUNDS}
         found |= {name: value and Fraction(value) for name, value in one.items() if value not in (0, inf)}
     for door in DOUBLES.values():
         check(door, tried, truths)

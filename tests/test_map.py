@@ -19,7 +19,6 @@ from atwood_cli.solver import quantities
 from atwood_cli.solver.machine import Machine
 from atwood_cli.solver.quantities import QUANTITIES
 
-from .test_doors import BOUNDS
 from .test_inputs import BY_DEFINITION
 from .test_sentences import REASONS
 from .tools import oracle
@@ -110,7 +109,7 @@ def lacking() -> Iterator[str]:
     scenes = [read_answers(inputs(words), None).decided.scene for _, words in table(KINDS)]
     judged = {x for scene in scenes for x, value in oracle.expected(scene).items() if value is not None}
     for name, about in QUANTITIES.items():
-        if name not in judged and name not in BOUNDS:
+        if name not in judged and name not in oracle.BOUNDS:
             yield f"`expected` in tests/tools/oracle.py has no value of {name!r} in any scene of KINDS in scenes.py."
         if not hasattr(Machine, name):
             yield f"`Machine` in atwood_cli/solver/machine.py has no property {name!r}."

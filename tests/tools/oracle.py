@@ -1,4 +1,4 @@
-"""An oracle that shares no code with the package: ball arithmetic of FLINT, exact fractions.
+"""An oracle that shares no equation with the package: ball arithmetic of FLINT, exact fractions.
 
 Formulas are the paper's own, as printed, for the lighter mass l and the heavier h; where the value
 is rational it is a Fraction. `correctly_rounded` raises the precision until the ball decides.
@@ -18,6 +18,9 @@ from atwood_cli.solver.scene import Scene
 LARGEST_EXPONENT = 10**8
 """Beyond this power of ten the package says infinite, and below its inverse that it is too small to be written."""
 WIDE = Context(prec=1000, Emin=-(10**9), Emax=10**9)
+
+BOUNDS = ("friction_force_min", "friction_force_max")
+"""They have no closed form: test_contact checks those of `solve`, with which other doors must agree."""
 
 Value = Fraction | Callable[[], flint.arb]
 

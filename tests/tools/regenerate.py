@@ -154,7 +154,7 @@ def essence(text: str) -> object:
 
 
 def denied(text: str) -> Iterator[str]:
-    """Values that transcripts of `atwood solve` print of a scene, and the oracle denies."""
+    """Values that transcripts of `atwood solve` print of a scene, and the oracle denies, also where none exists."""
     for line, out in re.findall(r"^\$ atwood solve (.*)\n((?:(?!\$ ).*\n)*)", text, re.MULTILINE):
         words = takewhile("|".__ne__, shlex.split(line))
         parts = [word.split("=", 1) if word.startswith("--") else [word] for word in words]
@@ -166,12 +166,15 @@ def denied(text: str) -> Iterator[str]:
         except SceneError:  # as the transcript says
             continue
         out += "".join(f'  "{name}": {bare}\n' for name, bare in zip(only, out.splitlines(), strict=False))
-        for name in [name for name in QUANTITIES if truth[name] is not None]:
+        for name in (name for name in QUANTITIES if name not in oracle.BOUNDS and not inputs.get(name)):
             number, unit = r"(-?\d+(?:[.]\d+)?(?:e[-+]?\d+)?)(?:\s±\s\S+)?", QUANTITIES[name].unit
             in_table = rf"[│|] {name}\b[^│|]*[│|] +{number} *[│|] {unit} *[│|]"
             said = rf'^  "{name}": {number},?$|\b{name}\s=\s{number}\s{unit}(?!\w)'
             for numbers in re.findall(f"{in_table}|{said}", out, re.MULTILINE):
                 number = "".join(numbers)
+                if truth[name] is None:
+                    yield f"{name} has no value, and not {number}: {line}"
+                    continue
                 digits = len(Decimal(number).as_tuple().digits)
                 rounded = [oracle.correctly_rounded(truth[name], n) for n in (None, digits)]
                 if float(number) != rounded[0] and Decimal(number) != rounded[1]:
