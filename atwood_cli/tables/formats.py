@@ -86,7 +86,7 @@ def is_shown_unit(text: str) -> bool:
 
 @lru_cache(1024)
 def _rule_for(order: int, code: str) -> Rule | None:
-    """Return the rule by which a format shows numbers above 0 (1), 0 or below (-1), if it shows their sign."""
+    """Return the rule by which a format shows numbers above 0 (1), 0, or below (-1), with their sign."""
     rules = [*map(_rule, _sections(code))]
     has_own = len(rules) > 1 and order < 0
     rule = (rules or [None])[1 if has_own else 2 if len(rules) > 2 and order == 0 else 0]
