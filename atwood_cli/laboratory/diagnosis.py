@@ -1,6 +1,6 @@
 """What contradicts a fit: measurements, columns, runs, or what is wrong in all runs alike."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from math import inf
 from typing import Any
@@ -66,7 +66,7 @@ def diagnosed(fit: Fitted, is_mixed: bool) -> Fitted:
     cells, rows, clean, line = _far(fit)
     if is_mixed:
         return fit._replace(outliers=_named(fit, cells))
-    freed = [*_freed(clean)]
+    freed = _freed(clean)
     causes = _repairs(clean, freed)
     if causes and line.chi2 >= _as_good(causes[0].line):
         rows = {}
@@ -85,21 +85,23 @@ def contradiction(fit: Fitted) -> str:
     held = np.flatnonzero(fit.used)[~moves(fit.data, fit.values)].tolist()
     if held:
         return f"{fit.runs.rows_in_words(*held)} would not move, as the fitted axle holds that; {CHECK}"
-    causes = _in_words(_repairs(fit, [*_freed(fit)]))
-    return causes or impossible(fit.runs, fit.used, fit.given, fit.names) or CHECK
+    causes = _in_words(_repairs(fit, _freed(fit)))
+    return causes or impossible(fit.runs, fit.used, fit.given, fit.names)[0] or CHECK
 
 
 # What may be wrong in all runs
 
 
-def _freed(fit: Fitted) -> Iterator[Fitted]:
-    """Yield the fits of one more quantity, the last of their names, where the runs determine it, too."""
+def _freed(fit: Fitted) -> dict[str, Fitted]:
+    """Return the fits of one more quantity, the last of their names, where the runs determine it, too."""
+    freed = dict[str, Fitted]()
     for name in (x for x in FITTED if x not in fit.names and (x != "delay" or fit.runs.kind == "time")):
         names, known = [*fit.names, name], {x: fit.given.values[x] for x in fit.given.values if x != name}
         if fit.line.dof > 1 and separates(fit.data, fit.given.values, names):
             with suppress(CannotSeparate, ZeroDivisionError):
                 values, line = estimate(fit.data, known, names, fit.values)
-                yield fit._replace(names=names, values=values, line=line)
+                freed[name] = fit._replace(names=names, values=values, line=line)
+    return freed
 
 
 def is_negative(name: str, value: float, u: float, line: Line | None = None) -> bool:
@@ -131,14 +133,14 @@ def _as_good(best: Line) -> float:
     return best.chi2 + NEAR_BEST * _variance(best)[0]
 
 
-def _repairs(fit: Fitted, freed: Sequence[Fitted]) -> list[Fitted]:
+def _repairs(fit: Fitted, freed: Mapping[str, Fitted]) -> list[Fitted]:
     """Return the freed quantities that repair a fit, the best first.
 
     An F test judges what the best takes off χ². With it are all that are as good. An inertia that is given
     without an uncertainty is repaired, too, if the interval of 95 % excludes it.
     """
-    changes = {one.names[-1]: abs(one.values[one.names[-1]] - fit.values[one.names[-1]]) for one in freed}
-    causes = [one for one in freed if changes[one.names[-1]] > one.line.u[-1] and _is_plausible(one)]
+    changes = {x: abs(one.values[x] - fit.values[x]) / one.line.u[-1] for x, one in freed.items()}
+    causes = [one for x, one in freed.items() if changes[x] > 1 and _is_plausible(one)]
     if not causes:
         return []
     causes.sort(key=lambda cause: cause.line.chi2)
@@ -147,8 +149,9 @@ def _repairs(fit: Fitted, freed: Sequence[Fitted]) -> list[Fitted]:
     if fdtrc(1, dof, max(fit.line.chi2 - best.chi2, 0) / scale) * len(causes) < RARE:
         return [cause for cause in causes if cause.line.chi2 < _as_good(best)]
     is_certain = "rim_mass" in fit.given.values and not any(fit.given.inputs[x].uncertainty for x in "MIR")
-    measured = (one for one in causes if one.names[-1] == "rim_mass" and is_certain)
-    return [one for one in measured if changes["rim_mass"] > one.line.times * one.line.u[-1]]
+    return [
+        x for x in causes if x is freed.get("rim_mass") and is_certain and changes["rim_mass"] > x.line.times
+    ]
 
 
 def _in_words(causes: Sequence[Fitted]) -> str:
@@ -171,19 +174,18 @@ def _cause(freed: Fitted) -> str:
     return f"{words} ({without}{given.option('find', ','.join(freed.names))})"
 
 
-def _unseen_delay(fit: Fitted, freed: Sequence[Fitted]) -> str:
+def _unseen_delay(fit: Fitted, freed: Mapping[str, Fitted]) -> str:
     """Say that runs cannot show a delay of all times, or ""."""
+    one, gives = freed.get("delay"), ""
     if fit.runs.kind != "time" or "delay" in fit.names:
         return ""
-    late = "the runs cannot show whether all times are too long by a delay"
-    for one in freed:
-        if one.names[-1] == "delay":
-            u, find = one.line.u[-1], fit.given.option("find", ",".join(one.names))
-            if one.line.times * u <= WIDE_DELAY:
-                return ""
-            gives = f" ({find} gives {published(one.values['delay'], u)[0]} s)"
-            late += gives if _is_plausible(one) else ""
+    if one and one.line.times * one.line.u[-1] <= WIDE_DELAY:
+        return ""
+    if one and _is_plausible(one):
+        value, _ = published(one.values["delay"], one.line.u[-1])
+        gives = f" ({fit.given.option('find', ','.join(one.names))} gives {value} s)"
     wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
+    late = f"the runs cannot show whether all times are too long by a delay{gives}"
     return f"{late}; the results assume none. {wider}"
 
 
@@ -274,10 +276,8 @@ def _far_runs(fit: Fitted) -> tuple[Distances, Line]:
         best, _ = estimate(others._replace(varying=data.varying), given, names, values)
         return line_of(of_measured, data, best, names)
 
-    def judge(some: Selection) -> tuple[Any, Any]:
-        return distances_from(line_by(some), some)
-
-    far = outliers(judge, usable, len(usable) - len(names), OUTLIER_LEVEL)
+    free = len(usable) - len(names)
+    far = outliers(lambda some: distances_from(line_by(some), some), usable, free, OUTLIER_LEVEL)
     kept = ~np.isin(usable, [*far])
     return far, line_by(kept).part(kept) if far else fit.line
 
@@ -304,26 +304,26 @@ def columns_in_doubt(runs: Runs, used: Selection) -> list[str]:
 
 def _is_sound(fit: Fitted) -> bool:
     """Decide if a pulley explains a fit, and more runs than are needed support it."""
-    is_negative_ = (
-        is_negative(x, fit.values[x], u, fit.line) for x, u in zip(fit.names, fit.line.u, strict=True)
-    )
-    return fit.line.dof > 0 and not any(is_negative_) and bool(moves(fit.data, fit.values).all())
+    pairs = zip(fit.names, fit.line.u, strict=True)
+    if any(is_negative(x, fit.values[x], u, fit.line) for x, u in pairs):
+        return False
+    return fit.line.dof > 0 and bool(moves(fit.data, fit.values).all())
 
 
 def impossible(
     runs: Runs, used: Selection, given: Conditions, names: Sequence[str], most: float = 1.0
-) -> str:
-    """Say which accelerations are far below, or above ``most`` times, that of free masses; or ""."""
+) -> tuple[str, float]:
+    """Say which accelerations are far below, or above ``most`` times, that of free masses; and how many."""
     if "gravity" in names or "delay" in names:
-        return ""
+        return "", 0.0
     data = as_data(runs, used)
     free: Any = physics.acceleration(data.h - data.l, data.h + data.l, given.values["gravity"])
     a = accelerations(data, data.measured)
-    places = np.flatnonzero(used)[(a / free < LEAST_SHARE) | (a / free > most)]
-    if not len(places):
-        return ""
-    i, others, gives = int(np.searchsorted(np.flatnonzero(used), places[0])), used.copy(), ""
-    others[places] = False
+    is_impossible = (a / free < LEAST_SHARE) | (a / free > most)
+    if not is_impossible.any():
+        return "", 0.0
+    places, i = np.flatnonzero(used)[is_impossible].tolist(), int(np.argmax(is_impossible))
+    others, gives = used & ~np.isin(np.arange(len(used)), places), ""
     with suppress(CannotSeparate):
         if others.any() and _is_sound(rest := best_fit(runs, others, given, names)):
             results = zip(names, rest.line.u, strict=True)
@@ -331,4 +331,5 @@ def impossible(
     value, times, usual = (rounded(float(x), 3) for x in (a[i], a[i] / free[i], free[i]))
     far = f"{value} m/s² is {times} times the acceleration without friction and pulley, {usual} m/s²"
     too = f"; see {shortened(runs.rows_in_words(*places[1:]))}, too" if len(places) > 1 else ""
-    return f"{runs.rows_in_words(places[0])}: {MEASURED_A[runs.kind]} = {far}{too}{gives}; {CHECK}"
+    words = f"{runs.rows_in_words(places[0])}: {MEASURED_A[runs.kind]} = {far}{too}{gives}; {CHECK}"
+    return words, float(is_impossible.mean())

@@ -100,7 +100,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         shown = shown & ~holds
     used = shown & ~runs.left_out
     columns = columns_in_doubt(runs, used)
-    runs = runs._replace(remarks=remarks, doubts=[*runs.doubts, *columns])
+    runs, doubt = runs._replace(remarks=remarks, doubts=[*runs.doubts, *columns]), ""
     try:
         if not used.any():
             raise CannotSeparate("no run can be used")
@@ -110,8 +110,9 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         if len(data.l) < needed:
             why = f"{counted(len(data.l), 'run')} cannot determine {' and '.join(what)}"
             raise CannotSeparate(f"{why}: give {needed} or more")
-        if message := impossible(runs, used, given, names, MOST_SHARE):
-            raise CannotSeparate(message)
+        doubt, share = impossible(runs, used, given, names, MOST_SHARE)
+        if share > 0.5:
+            raise CannotSeparate
         if not separates(data, given.values, names):
             give, is_one = (f", or give {GIVE[x]}" for x in names if x in GIVE), len(names) == 1
             why = f"determine {what[0]}" if is_one else f"separate {' from '.join(what)}"
@@ -120,8 +121,10 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         fit = _with_results(runs, used, given, names)
     except CannotSeparate as error:
         more = behind_an_error([*remarks, *runs.doubts])
-        raise CannotSeparate(f"{error}{more}") from None
+        raise CannotSeparate(f"{doubt or error}{more}") from None
     fit = diagnosed(fit._replace(shown=shown), is_mixed=bool(columns))
+    if doubt and not fit.outliers:
+        fit = fit._replace(runs=runs._replace(doubts=[*runs.doubts, f"{doubt}."]))
     causes, (low, high) = [*fit.causes], fit.results["gravity"].interval if "gravity" in names else EARTH
     if high < EARTH[0] or low > EARTH[1]:
         causes.append(f"gravity is not that of Earth, {EARTH[0]} to {EARTH[1]} m/s²: {CHECK}")
@@ -134,7 +137,7 @@ def _with_results(runs: Runs, used: Selection, given: Conditions, names: Sequenc
         fit = best_fit(runs, used, given, names)
         ends = [*_at_ends(fit)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        message, data = impossible(runs, used, given, names) or CHECK, as_data(runs, used)
+        message, data = impossible(runs, used, given, names)[0] or CHECK, as_data(runs, used)
         with suppress(CannotSeparate):
             values = by_forces(data, given.values, names)
             line = line_of(of_forces, data, values, names)
