@@ -165,6 +165,13 @@ def inertia(c: Claims, shown: str, digits: int) -> None:
     assert abs(Fraction(shown) / beta - 1) < Fraction(1, 10 ** (digits - 1))
 
 
+def weights(c: Claims, x: str, weight: str, mass: str, *others: Any) -> None:
+    assert Fraction(weight) == getattr(c.scene, x) * c.scene.g
+    assert abs(Fraction(mass) * c.scene.g / Fraction(weight) - 1) < Fraction(1, 10 ** (others[-1] - 1))
+    if len(others) > 1 and others[0]:
+        weights(c, *others)
+
+
 def short_wrap(c: Claims, *numbers: Any) -> None:
     assert {*map(Fraction, numbers[:-1])} == {c.scene.wrap.number}
     assert c.scene.wrap.unit == "°"
@@ -229,6 +236,14 @@ SENTENCES: dict[str, Callable[..., None]] = {
     + r"\.": open_range,
     rf"(.*?): ({RANGES})(?:; ask for digits \(--digits 17\) to see it)?\.": out_of_range,
     rf"The inertia factor I/\(M R\^2\) is {NUMBER}, above 1: .*": inertia,
+    rf"(m[12]) is a weight of {NUMBER} N, the mass {NUMBER} kg"
+    rf"(?:, and (m[12]) is a weight of {NUMBER} N, the mass {NUMBER} kg)?\.": weights,
+    rf"(m[12]) is a mass of {NUMBER} kg; for a weight give its unit\.": lambda c, x, mass, digits: claimed(
+        lambda c: Fraction(mass) == getattr(c.scene, x) and bool(c.scene.terms)
+    )(c),
+    r"A pull by hand is not a hanging weight: .* and acceleration and the other tension differ\.": claimed(
+        lambda c: bool(c.scene.terms) and c.expected()["acceleration"] != 0
+    ),
     rf"The wrap is {NUMBER}°; for radians write {NUMBER}rad, for turns {NUMBER}turn\.": short_wrap,
 }
 """What is said of a scene, and the claim in it."""
@@ -270,6 +285,8 @@ def drawn(rng: Random) -> dict[str, str]:
     g, masses = Decimal(words.get("g", "9.80665")), [Decimal(words[x]) for x in ("m1", "m2")]
     if "axle" in words and rng.random() < 0.3:
         words["axle"] = str(abs(masses[0] - masses[1]) * g * near(rng))
+    if rng.random() < 0.1:
+        words |= {x: f"{words[x]}N" for x in rng.choice([["m1"], ["m2"], ["m1", "m2"]])}
     if "mu" not in words:
         return words | {"m1": "0"} if rng.random() < 0.1 else words
     verge = Answers(read_scene({**words, "mu": None}), 20)["mu_verge"]

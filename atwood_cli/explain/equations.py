@@ -17,7 +17,7 @@ from ..numbers.rational import EXACT, Irrational
 from ..solver.answers import Answers
 from ..solver.machine import Machine
 from ..solver.quantities import QUANTITIES
-from ..solver.scene import MASSES
+from .given import WEIGHTS
 
 INPUT_DIGITS = 17
 """Digits up to which an input is put in as it was typed."""
@@ -100,7 +100,7 @@ class Derivation:
         """Return what is given or found, by symbol."""
         decided, scene, motion = self.decided, self.scene, self.decided.motion
         terms = {
-            f"{kind.symbol}{x[1:] if x in MASSES else ''}": scene.number_of(x) * decided.heavier_side
+            WEIGHTS.get(x, kind.symbol): scene.number_of(x) * decided.heavier_side
             if x == "a"
             else abs(scene.number_of(x))
             for x, kind in scene.terms

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..numbers.digits import Rounding, as_typed, exact_or_rounded, format_number, to_double
 from ..solver.answers import Answers
-from ..solver.scene import INERTIA_FACTORS, INPUTS, MEASURED, Scene, parameter_of, with_unit
+from ..solver.scene import INERTIA_FACTORS, INPUTS, MEASURED, WEIGHT, Scene, Terms, parameter_of, with_unit
 
 VERSION = 3
 """The version of JSON's keys (see `examples/json.md`), which grows when a key goes or changes its meaning."""
@@ -43,24 +43,35 @@ def _rounded(value: Any, round_: Rounding[Any]) -> Any:
     return "inf" if value == inf else value
 
 
+WEIGHTS = {"m1": "W1", "m2": "W2", "M": "W_M"}
+"""The names of weights, by those of masses."""
+
+
+def label(x: str, terms: Terms | None) -> str:
+    """Return the name of the number of an input in these terms: W1 if they are weights of m1."""
+    return WEIGHTS[x] if terms == WEIGHT else x
+
+
 def inputs_in_words(answers: Answers) -> dict[str, str]:
-    """Say each input, as m1 = 1 kg, with at least as many decimals as its uncertainty: 3.00 ± 0.02."""
-    parts, scene = {}, answers.decided.scene
-    for name in (*INPUTS, *MEASURED):
-        number = scene.number_of(name)
-        if number is None or name == scene.motion.finds:
-            continue
-        typed = answers.typed(name)
-        words = typed.quotient or (as_typed(number / typed.unit.size) if number != inf else "inf")
-        if typed.uncertainty:
-            u = as_typed(typed.uncertainty / typed.unit.size)
-            if not {"e", "/"} & {*words, *u}:
-                decimals = max(len(number.partition(".")[2]) for number in (words, u))
-                words = f"{Decimal(words):.{decimals}f}"
-            words = f"{words} ± {u}"
-        unit = typed.unit.in_words or scene.unit_of(name)
-        parts[name] = f"{name} = {words if number == inf else with_unit(words, unit)}"
-    return parts
+    """Say each input, as m1 = 1 kg or W1 = 20 N."""
+    scene = answers.decided.scene
+    given = [x for x in (*INPUTS, *MEASURED) if scene.number_of(x) is not None and x != scene.motion.finds]
+    return {x: f"{label(x, dict(scene.terms).get(x))} = {as_given(answers, x)}" for x in given}
+
+
+def as_given(answers: Answers, x: str) -> str:
+    """Say the number given for an input, with at least as many decimals as its uncertainty: 3.00 ± 0.02."""
+    typed, scene = answers.typed(x), answers.decided.scene
+    if (number := scene.number_of(x)) == inf:
+        return "inf"
+    words = typed.quotient or as_typed(number / typed.unit.size)
+    if typed.uncertainty:
+        u = as_typed(typed.uncertainty / typed.unit.size)
+        if not {"e", "/"} & {*words, *u}:
+            decimals = max(len(number.partition(".")[2]) for number in (words, u))
+            words = f"{Decimal(words):.{decimals}f}"
+        words = f"{words} ± {u}"
+    return with_unit(words, typed.unit.in_words or scene.unit_of(x))
 
 
 def inputs_with_effect(answers: Answers, ranges: Mapping[str, str] = {}) -> dict[str, str]:

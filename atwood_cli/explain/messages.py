@@ -25,6 +25,7 @@ from ..solver.answers import ABOVE_DOUBLES, BELOW_DOUBLES, Answers
 from ..solver.physics import critical_heavier_mass
 from ..solver.quantities import FROM_MOTION, NAMES, NEEDS_FIND_AXLE, QUANTITIES
 from ..solver.scene import MASSES, with_unit
+from .given import as_given, label
 
 
 def unmarked(words: str) -> str:
@@ -118,7 +119,8 @@ def without_uncertainty(answers: Answers, names: Iterable[str]) -> list[str]:
 
 def _at(answers: Answers, x: str, value: Fraction) -> str:
     """Say a value of an input, with the unit that it was given in: mu = 0.35."""
-    return f"{x} = {with_unit(as_typed(value), answers.decided.scene.unit_of(x))}"
+    scene = answers.decided.scene
+    return f"{label(x, dict(scene.terms).get(x))} = {with_unit(as_typed(value), scene.unit_of(x))}"
 
 
 LIMITS = {
@@ -292,10 +294,6 @@ def remarks(answers: Answers) -> list[str]:
     return sentences
 
 
-def _short(answers: Answers, number: Fraction) -> str:
-    return format_number(strip_zeros(_beside(answers, None)(number)))
-
-
 def on_units(answers: Answers) -> list[str]:
     """Say of numbers without a unit what they may have been meant to be: radians, turns, or a weight."""
     scene, wrap, sentences = answers.decided.scene, answers.decided.scene.wrap, []
@@ -305,22 +303,25 @@ def on_units(answers: Answers) -> list[str]:
     weights = [x for x, _ in scene.terms if x in MASSES]
     bare = [x for x in MASSES if x not in (*weights, scene.motion.finds) and not answers.typed(x).unit.symbol]
     for x in bare if weights else ():
-        if mass := scene.own(x):
-            sentences.append(f"`{x}` is a mass of {_short(answers, mass)} kg; for a weight give its unit.")
+        if scene.own(x):
+            sentences.append(f"`{x}` is a mass of {as_given(answers, x)}; for a weight give its unit.")
+    if any(map(scene.own, weights)) and answers["acceleration"] != 0:
+        others = "other results" if scene.motion.finds else "`acceleration` and the other tension"
+        pull = "A pull by hand is not a hanging weight: the tension there is then the pull itself"
+        sentences.append(f"{pull}, and {others} differ.")
     return sentences
 
 
 def _on_weights(answers: Answers) -> list[str]:
     """Say the masses of weights, and which way a mass is taken to move."""
     scene, motion = answers.decided.scene, answers.decided.motion
-    weights = {x: _short(answers, scene.number_of(x)) for x, _ in scene.terms if x in MASSES and scene.own(x)}
+    masses = {x: strip_zeros(_beside(answers, None)(mass)) for x in MASSES if (mass := getattr(scene, x))}
     each = [
-        f"`{x}` is a weight of {weights[x]} N, the mass {_short(answers, getattr(scene, x))} kg"
-        for x in weights
+        f"`{x}` is a weight of {as_given(answers, x)}, the mass {format_number(masses[x])} kg"
+        for x, _ in scene.terms
+        if x in masses
     ]
-    of = f" of {min(weights.values())} N" if len(weights) == 1 else ""
-    pull = f"; a pull{of} by hand gives another acceleration" if answers["acceleration"] != 0 else ""
-    sentences = [f"{', and '.join(each)}{pull}."] if weights else []
+    sentences = [f"{', and '.join(each)}."] if each else []
     if motion.finds in MASSES and motion.a is None and 0 not in (scene.m1, scene.m2):
         name = "speed" if motion.drop is None else "drop"
         falls = f"is taken to fall; if it rises, give a `{name}` below 0"

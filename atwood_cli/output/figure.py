@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import escape
 
+from ..explain.given import WEIGHTS
 from ..solver.quantities import QUANTITIES
 from ..solver.scene import INPUTS, SceneError
 from .files import check_free, written_beside
@@ -68,6 +69,8 @@ PICTURE_FORMATS: Any = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate"
 
 def axis_words(name: str) -> tuple[str, str]:
     """Return the words of a parameter or a quantity, and its symbol, if it has one in print."""
+    if name in WEIGHTS.values():
+        return "weight", name.translate(SUBSCRIPTS)
     about = INPUTS.get(name) or QUANTITIES[name]
     return about.axis or name.rstrip("_12").replace("_", " "), "" if "_" in about.symbol else about.symbol
 

@@ -93,7 +93,7 @@ def say_regimes(along: Range, in_order: Sequence[Change], scene: Scene) -> str:
         place = along.in_units(change.at)
         begins = before.at if before else along.ends[0]
         where = "at" if change.at == begins else "up to"
-        parts.append(f"{change.before} {where} {place if before else f'{along.name} = {place}'}")
+        parts.append(f"{change.before} {where} {place if before else f'{along.label} = {place}'}")
     first_regime = Decisions(along.at(along.ends[0], scene)).regime
     last = in_order[-1].after if in_order else first_regime
     parts.append(f"{last} beyond" if in_order else last)

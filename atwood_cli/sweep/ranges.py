@@ -14,7 +14,7 @@ from math import inf, prod
 from typing import NamedTuple
 
 from ..explain.conditions import Condition, failures_of
-from ..explain.given import inputs_with_effect
+from ..explain.given import inputs_with_effect, label
 from ..numbers.digits import (
     DOUBLE_DIGITS,
     SHOWN_DIGITS,
@@ -67,6 +67,11 @@ class Range(NamedTuple):
         return "," in self.typed
 
     @property
+    def label(self) -> str:
+        """The name in sentences and titles: W1 for weights of m1."""
+        return label(self.name, self.unit.terms)
+
+    @property
     def log(self) -> bool:
         return self.typed.endswith("log")
 
@@ -75,11 +80,11 @@ class Range(NamedTuple):
         """Return the range in a sentence: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
         if not self.is_list:
             start, stop = self.points[0], self.points[-1]
-            return f"{self.name} from {self.cell(start)} to {self.in_units(stop.value)}"
+            return f"{self.label} from {self.cell(start)} to {self.in_units(stop.value)}"
         values = zip(self.points, (self.in_units(point.value) for point in self.points), strict=True)
         texts = [f"{point.name} ({value})" if point.name else value for point, value in values]
         first = texts[:-1] if len(texts) <= MOST_VALUES_SAID else [*texts[:2], "..."]
-        return f"{self.name} = {', '.join(first)} or {texts[-1]}"
+        return f"{self.label} = {', '.join(first)} or {texts[-1]}"
 
     @property
     def finite(self) -> list[Fraction]:
@@ -115,7 +120,7 @@ class Range(NamedTuple):
 
     def in_words(self, point: Point) -> str:
         """Return a point in a sentence: M = 10 kg, or disk."""
-        return point.name or f"{self.name} = {self.in_units(point.value)}"
+        return point.name or f"{self.label} = {self.in_units(point.value)}"
 
 
 class Sweep(NamedTuple):

@@ -140,7 +140,7 @@ def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: 
     along, panels = sweep.along, panels_of(sweep, names, digits)
     inputs = [words for name, words in sweep.inputs.items() if name != along.name]
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
-    title = f"{axis_title(chain(*quantities))} against {axis_title([along.name])}"
+    title = f"{axis_title(chain(*quantities))} against {axis_title([along.label])}"
     above = [title[0].upper() + title[1:], ", ".join(inputs)]
     with saved(picture, above, panels=len(panels)) as figure:
         all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
@@ -171,7 +171,7 @@ def _add_legend(axes: "Axes") -> None:
 
 def _set_places(axes: "Axes", along: Range) -> None:
     """Set the x axis; that of a list has its values at equal distances, upright if there is no room."""
-    axes.set_xlabel(axis_title([along.name], along.unit.in_words))
+    axes.set_xlabel(axis_title([along.label], along.unit.in_words))
     if along.is_list:
         names = ["locked" if point == LOCKED else typeset(along.cell(point)) for point in along.points]
         rotation = 90 if len("  ".join(names)) > TICK_CHARACTERS else 0

@@ -99,7 +99,7 @@ class SweepPage:
             for range_ in sweep.ranges:
                 points = [range_.cell(row.at[range_.name]) for row in rows]
                 named = any(point.name for point in range_.points)
-                columns[_head(range_.name, range_.unit.in_words)] = points if named else aligned(points)
+                columns[_head(range_.label, range_.unit.in_words)] = points if named else aligned(points)
             for name in [name for name in shown if name not in same]:
                 unit = QUANTITIES[name].unit if name in QUANTITIES else ""
                 columns[_head(name, unit)] = aligned(shown[name])
