@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-from ..numbers.text import naming_the_extra
+from ..output.text import naming_the_extra
 from ..reading.names import read_quantities
 from ..tables.sources import Unreadable
 from .solving import ReadColumns, TableTally, Wanted, read_columns, solve_cells

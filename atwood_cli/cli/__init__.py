@@ -12,8 +12,8 @@ import typer
 from typer.core import TyperCommand
 
 from .. import __version__
-from ..numbers.text import LONGEST_NAME, naming_the_extra, shortened
-from ..output.text import drop, finish, say
+from ..numbers.text import LONGEST_NAME, shortened
+from ..output.text import drop, finish, naming_the_extra, say
 from ..reading.names import input_meant
 from ..solver.scene import SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_options

@@ -6,7 +6,8 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any
 
-from ..numbers.text import naming_the_extra, without_blanks
+from ..numbers.text import without_blanks
+from ..output.text import naming_the_extra
 from ..reading.inputs import read_input
 from ..reading.names import divided
 from ..solver.scene import INPUTS, MASSES, Given, Input, SceneError

@@ -120,8 +120,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
             raise CannotSeparate(f"the runs do not {why}: {vary}")
         fit = _with_results(runs, used, given, names)
     except CannotSeparate as error:
-        more = behind_an_error([*remarks, *runs.doubts])
-        raise CannotSeparate(f"{doubt or error}{more}") from None
+        raise CannotSeparate(f"{doubt or error}{behind_an_error([*remarks, *runs.doubts])}") from None
     fit = diagnosed(fit._replace(shown=shown), is_mixed=bool(columns))
     if doubt and not fit.outliers:
         fit = fit._replace(runs=runs._replace(doubts=[*runs.doubts, f"{doubt}."]))

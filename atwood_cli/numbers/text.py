@@ -1,10 +1,7 @@
 """Texts as messages show them."""
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 
-EXTRAS = {"matplotlib": "figure", "polars": "batch", "scipy": "fit"}
-"""The extras that bring optional packages."""
 LONGEST_NAME = 255
 """The most characters of a file name that a message shows."""
 
@@ -42,16 +39,3 @@ def nearest(word: str, words: Iterable[str]) -> str:
     word, words = word.lower(), list(words) if word else []
     close = [longer for longer in words if longer.startswith(word)][:3] or get_close_matches(word, words, n=1)
     return f"; did you mean {' or '.join(close)}?" if close else ""
-
-
-@contextmanager
-def naming_the_extra() -> Iterator[None]:
-    """Let the error for an optional package that is missing say how to install it."""
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        package = str(error.name).partition(".")[0]
-        if package not in EXTRAS:
-            raise
-        way = f"install it with: pip install 'atwood-cli[{EXTRAS[package]}]'"
-        raise ModuleNotFoundError(f"this needs {package}; {way}", name=error.name) from None

@@ -1,11 +1,11 @@
-"""Text without rich: cells, lines, tables of Markdown, JSON, and sentences on stderr."""
+"""Text without rich: cells, lines, tables of Markdown, JSON, sentences on stderr, and what to install."""
 
 import json
 import os
 import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from decimal import Decimal
 from typing import Any, TextIO
 
@@ -47,6 +47,23 @@ def wrapped(words: str, width: int, first: str = "", later: str = "") -> list[st
     whole: Any = {"break_long_words": False, "break_on_hyphens": False}
     lines = wrap(" ".join(pieces), max(width, 1), initial_indent=first, subsequent_indent=later, **whole)
     return [line.replace("\xa0", " ") for line in lines]
+
+
+EXTRAS = {"matplotlib": "figure", "polars": "batch", "scipy": "fit"}
+"""The extras that bring optional packages."""
+
+
+@contextmanager
+def naming_the_extra() -> Iterator[None]:
+    """Let the error for an optional package that is missing say how to install it."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        package = str(error.name).partition(".")[0]
+        if package not in EXTRAS:
+            raise
+        way = f"install it with: pip install 'atwood-cli[{EXTRAS[package]}]'"
+        raise ModuleNotFoundError(f"this needs {package}; {way}", name=error.name) from None
 
 
 def finish() -> None:
