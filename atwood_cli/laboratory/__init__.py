@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..numbers.text import without_blanks
 from ..output.text import naming_the_extra
-from ..reading.inputs import read_input
+from ..reading.inputs import IS_NOT_ONE, read_input
 from ..reading.names import divided
 from ..solver.scene import INPUTS, MASSES, Given, Input, SceneError
 from ..tables.sources import Unreadable
@@ -130,5 +130,5 @@ def _read_given(name: str, value: Given) -> Input:
     try:
         return read_input("m1" if name == "hanger" else name, value)
     except SceneError as error:
-        is_list = "atwood sweep" in error.rule
-        raise SceneError(name, value, "must be one number, for all runs" if is_list else error.rule) from None
+        rule = "must be one number, for all runs" if error.rule == IS_NOT_ONE else error.rule
+        raise SceneError(name, value, rule) from None

@@ -106,6 +106,7 @@ def _read_text(name: str, text: str) -> Input:
 
 
 NO_UNCERTAINTY = "has an uncertainty, which only solve and fit take; give the value alone"
+IS_NOT_ONE = "is not a number; atwood sweep takes a range as start:stop:count, and a list as 1,2,5"
 THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}(?!\d)[^,]*", re.ASCII)
 """A number with one comma before three digits; with more commas it may be a list."""
 NUMBER_SIGNS = "±µμ°·²⁻π"
@@ -126,9 +127,7 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
     if "," in word and numbers:
         return f"is not a number; write {' or '.join(numbers)}, without a comma"
     if parameter == MEASURED["a"] and re.search(r"[*^²/] ?\(?[\d.]", word):
-        return (
-            "is not a number; if a fall gives it, give two of drop, time and speed (--drop, --time, --speed)"
-        )
+        return "is not a number; if a fall gives it, give two of drop, time and speed"
     if parameter.dimension == "time" and ":" in word:
         return "is no time; write minutes and seconds as 1:02.50"
     if not word.isascii() and re.search("[0-9]", word):
@@ -137,7 +136,7 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         odd = min(re.findall("[^ -~]", word), key=NUMBER_SIGNS.__contains__)
         return f"{NOT_A_NUMBER}, without the {in_quotes(odd)} ({name(odd, 'no letter').lower()})"
     if re.match(r"[-+.]?\d.*[:,]|[\d.]+-[\d.]+$", word):
-        return "is not a number; atwood sweep takes a range as start:stop:count, and a list as 1,2,5"
+        return IS_NOT_ONE
     names = f", or one of {', '.join(parameter.names)}" if parameter.names else ""
     locked = "; inf is a locked pulley" if parameter.may_be_infinite else ""
     return f"{NOT_A_NUMBER}{names}{locked}{nearest(word, parameter.names)}"
