@@ -257,7 +257,8 @@ def _no_run(row: Sequence[str], headings: Sequence[Heading]) -> str:
         return "a mean or a standard deviation is no run"
     cells = [(own.name, row[own.place].strip()) for own in headings if own.name in ("drop", "time")]
     begins = len({name for name, _ in cells}) == 2 and all(ZERO.fullmatch(cell) for _, cell in cells)
-    return "the height and the time are 0" if begins else ""
+    what = "0" if any(cell for _, cell in cells) else "empty"
+    return f"the height and the time are {what}" if begins else ""
 
 
 def _word(own: Heading) -> str:
