@@ -74,6 +74,7 @@ class Solution(Generic[T]):
     acceleration: T | None
     tension_1: T | None
     tension_2: T | None
+    tension_difference: T | None
     mu_verge: T | None
     safety_factor: T | None
     tension_ratio: T | None
@@ -101,9 +102,13 @@ class Solution(Generic[T]):
     mu_k: T | None
     axle: T | None
     axle_torque: T | None
+    drive_force: T | None
+    drive_torque: T | None
     drop: T | None
     fall_time: T | None
     final_speed: T | None
+    final_angular_speed: T | None
+    kinetic_energy: T | None
     uncertainty: Mapping[str, T | None]
 
     def __init__(self, answers: Answers) -> None:
@@ -163,7 +168,7 @@ class Solution(Generic[T]):
         shown: list[str] = [
             quantity_in_words(answers, name) for name in STANDARD[1:] if answers[name] is not None
         ]
-        return f"<Solution {'; '.join([self.regime, *shown])}>"
+        return f"<Solution {'; '.join([*filter(None, [self.regime]), *shown])}>"
 
     def _repr_html_(self) -> str:
         from .output.text import in_html
@@ -227,7 +232,8 @@ def solve(m1: Mass = None, m2: Mass = None, *, digits: Any = None, **given: Unpa
         drop, time, speed: Of a fall from rest the height, in m, the time, in s, and the speed at its end, in
             m/s. Two stand for the acceleration ``a`` that they imply; one gives the others. Where a mass is
             to be found, m2 falls, and rises if the height or the speed is below 0.
-        find: The input that the motion gives, "m1", "m2", "M", "g", "mu_k" or "axle".
+        find: The input that the motion gives, "m1", "m2", "M", "g", "mu_k" or "axle", or the
+            "drive": a motor or a brake that moves the masses so.
         digits: The number of significant digits of Decimals; None gives floats.
 
     Returns:

@@ -19,10 +19,11 @@ from .tools import oracle
 from .tools.running import TOP, Atwood
 
 VALUES = """
-    acceleration tension_1 tension_2 mu_verge safety_factor tension_ratio capstan_ratio friction_force
+    acceleration tension_1 tension_2 tension_difference mu_verge safety_factor tension_ratio capstan_ratio friction_force
     friction_force_min friction_force_max friction_force_x friction_force_y axle_force torque rim_acceleration
     angular_acceleration critical_pulley_mass critical_heavier_mass critical_lighter_mass least_heavier_mass
-    least_pulley_mass least_wrap pulley_mass moment_of_inertia gravity m1 m2 mu_k axle axle_torque drop fall_time final_speed"""
+    least_pulley_mass least_wrap pulley_mass moment_of_inertia gravity m1 m2 mu_k axle axle_torque drive_force drive_torque drop fall_time final_speed
+    final_angular_speed kinetic_energy"""
 SCENE = "m1 m2 M mu mu_k g inertia I R wrap axle"
 FITTED = """rim_mass axle gravity delay pulley_mass moment_of_inertia uncertainty interval correlation chi2 dof
     interval_dof between_runs between_runs_unit runs notes"""
@@ -53,7 +54,7 @@ PYTHON: dict[str, tuple[Iterable[str], str]] = {
     ),
     "solve_arrays": (
         parameters(solve_arrays),
-        "m1 m2 M? mu? mu_k? * g? inertia? I? R? wrap=180.0 axle? accuracy='certified' quantities?",
+        "m1 m2 M? mu? mu_k? * g? inertia? I? R? wrap=180.0 axle? drop? time? speed? accuracy='certified' quantities?",
     ),
     "solve_table": (parameters(solve_table), "table quantities?"),
     "fit": (
@@ -67,7 +68,7 @@ PYTHON: dict[str, tuple[Iterable[str], str]] = {
     "STATUSES": (
         [status.replace(" ", "_") for status in atwood_cli.STATUSES],
         """valid m1 m2 M mu mu_k g inertia R wrap no_mass friction_at_a_free_end mu_k_without_mu mu_k_above_mu
-        NaN I axle I_and_inertia I_without_R I_with_M_=_0_or_inf""",
+        NaN I axle I_and_inertia I_without_R I_with_M_=_0_or_inf drop time speed two_of_drop,_time_and_speed""",
     ),
     "commands": (COMMANDS, "solve sweep contact fit batch quantities tradeoff"),
     "quantities": (QUANTITIES, VALUES),
@@ -93,4 +94,6 @@ def test_what_a_version_promises_of_statuses_and_csv(atwood: Atwood) -> None:
     assert atwood("solve", *scene, "--expect", "slip").status == COULD_NOT
     assert atwood("solve", "--m1", "-1", "--m2", "3").status == WRONG_USAGE
     columns = atwood("sweep", "--m1", "1:2:2", "--m2", "3", "--csv").out.split()[0]
-    assert columns == f"m1,regime,{','.join(VALUES.split()[:4])},friction_force,critical_pulley_mass"
+    assert (
+        columns == "m1,regime,acceleration,tension_1,tension_2,mu_verge,friction_force,critical_pulley_mass"
+    )

@@ -161,7 +161,8 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     scene, motion, wrap = decided.scene, decided.motion, exact(decided.scene.wrap.number)
     names = {"mu": "μ", "mu_k": "μ_k", "drop": "s", "time": "t", "speed": "v"}
     given = {x: getattr(scene, x) for x in INPUTS} | motion._asdict()
-    known = {names.get(name, name): q for name, q in given.items() if q is not None}
+    sizes = {name: abs(q) if name in ("drop", "speed") and q else q for name, q in given.items()}
+    known = {names.get(name, name): q for name, q in sizes.items() if q is not None}
     known |= {
         "M": decided.pulley_mass or Fraction(0),
         "c": decided.rim_mass,
@@ -174,7 +175,12 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
             decided.heavier_side if x == "a" else 1
         )
     env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}
-    env |= {"π": +mp.pi, "φ": wrap if scene.wrap.unit == "rad" else mp.radians(wrap), "|a|": abs(env["a"])}
+    env |= {
+        "π": +mp.pi,
+        "φ": wrap if scene.wrap.unit == "rad" else mp.radians(wrap),
+        "|a|": abs(env["a"]),
+        "a_1": -env["a"],
+    }
     if scene.mu == 0 or scene.mu_k == 0:
         k, z = ("k", "z") if scene.mu == 0 else ("k_kin", "z_kin")
         env |= {k: mp.mpf(1), z: mp.mpf(0), "M*": mp.mpf(0)}
@@ -188,11 +194,14 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
             assert mp.almosteq(value, mp.mpf(equation.result), rel_eps=mp.mpf(10) ** -45), left
         env[left.removesuffix(" - 1")] = mp.mpf(equation.result) + left.endswith(" - 1")
         if " - T" in left:
-            env[heavier] = env[lighter] + mp.mpf(equation.result)
+            sign = 1 if left.startswith(heavier) else -1
+            env[heavier] = env[lighter] + sign * mp.mpf(equation.result)
         elif left == lighter:  # what is shown of equal tensions
             env.setdefault(heavier, env[lighter])
         if left == "|a|":
             env["a"] = -env["|a|"]
+        elif left == "a":
+            env["a_1"] = -env["a"]
     check_laws(found, {spelled(name): x for name, x in env.items()})
 
 

@@ -11,10 +11,9 @@ from subprocess import run
 import pytest
 
 from atwood_cli import Solution
-from atwood_cli.explain.conditions import dimension_of
 from atwood_cli.output.typeset import IN_LATEX
 from atwood_cli.reading.answers import read_answers
-from atwood_cli.reading.units import UNITS
+from atwood_cli.reading.units import UNITS, dimension_of
 from atwood_cli.solver import quantities
 from atwood_cli.solver.machine import Machine
 from atwood_cli.solver.quantities import QUANTITIES
@@ -46,7 +45,7 @@ CHANGES = [
      "        if self.scene.brake is not None:\n            return self.scene.brake + (self.scene.axle or ZERO)\n"),
     ("add an input", "api.py", "    a: Given | None\n", "    brake: Given | None\n"),
     ("add an input", "arrays/__init__.py", '    accuracy: Accuracy = "certified",\n    quantities: ', "    brake: Numbers | None = None,\n"),
-    ("add an input", "arrays/__init__.py", ")\n    return solve_and_count(dict(zip(INPUTS", ", brake"),
+    ("add an input", "arrays/__init__.py", ", drop, time, speed)\n    return solve_and_count(dict(zip(COLUMNS", ", brake"),
     ("add an input", "arrays/inputs.py", ')\n"""The meanings of the codes in', '    "brake",\n'),
     ("add an input", "test_contract", '"\nFITTED = ', " brake"),
     ("add an input", "test_contract", " a? drop? time? speed? find?", " brake?"),
@@ -96,11 +95,14 @@ def test_the_suite_passes_with_what_the_map_names(changed: Path, pytestconfig: p
 
 def test_what_the_map_names_is_enough(changed: Path) -> None:
     ran = process(code=SEEN, PYTHONPATH=str(changed), PYTHONSAFEPATH="1")
-    seen = "True\n10.0 3.0 4.0\nTrue\n3.72266 nan 20\n-3.4751454545454545\n10\nM,trial\n1,10\n2,10\n1\n"
+    seen = "True\n10.0 3.0 4.0\nTrue\n3.72266 nan 24\n-3.4751454545454545\n10\nM,trial\n1,10\n2,10\n1\n"
     assert (ran.out, ran.err) == (seen, "")
 
 
-OF_MOTION = ("NEEDS_A", "NEEDS_FIND_AXLE", "NEEDS_FALL", "AT_REST", "SLOWS_DOWN")
+OF_MOTION = (
+    *("FINDS_ANOTHER", "NEEDS_MOTION", "NEEDS_FALL", "AT_REST", "SLOWS_DOWN"),
+    *("WOULD_SLIP", "ANY_DRIVEN", "EITHER_WAY", "NEEDS_MASSES"),
+)
 """How reasons of quantities begin that a measurement gives: no scene lacks them."""
 
 

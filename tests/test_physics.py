@@ -37,6 +37,7 @@ def laws(scene: Any) -> dict[str, bool]:
         flint.arb.pi() * rational(scene.wrap.number) / 180,
     )
     l, h = min(m1, m2), max(m1, m2)
+    driven, force = scene.motion.finds == "drive", value["drive_force"]
     if M is None and scene.mu is None:
         M = Fraction(0)
     beta = rational(scene.I / scene.R**2 / M if scene.I and M else scene.inertia)
@@ -44,7 +45,15 @@ def laws(scene: Any) -> dict[str, bool]:
     c = rational(scene.I / scene.R**2) if scene.I else None if M is None else beta * M
     a, t1, t2, rim = (value[x] for x in "acceleration tension_1 tension_2 rim_acceleration".split())
 
+    if driven and t1 > t2:
+        l, h = m2, m1
+    elif driven:
+        l, h = m1, m2
+
     def ratio(l: Any, h: Any, c: Any = c) -> Any:
+        if driven:
+            away = value["acceleration"] * (-1 if t1 > t2 else 1)
+            return h * (g - away) / (l * (g + away))
         left = (h - l) * g - f
         a = left / (h + l + c) if left > 0 and c is not None else 0
         return h * (g - a) / (l * (g + a))
@@ -52,14 +61,26 @@ def laws(scene: Any) -> dict[str, bool]:
     kept = {}
     if a is not None:
         kept["(1)"] = same(m1 * (g + a), t1) and same(m2 * (g - a), t2)
-    if rim is not None and c is not None:
+    if driven and force is not None:
+        kept["(3) with a drive"] = same(t2 - t1 + force, c * a + side(a) * f)
+    elif rim is not None and c is not None and not driven:
         way = side(m2 - m1) or -side(a)  # equal masses only slow down
         kept["(3)"] = bool(abs(t2 - t1) <= f) if rim == 0 else same(t2 - t1, c * rim + way * f)
-    if value["final_speed"] is not None and regime == "no-slip":
+    v, turning = value["final_speed"], value["final_angular_speed"]
+    if value["kinetic_energy"] is not None and scene.R and c is not None:
+        at_rim = turning * rational(scene.R)
+        kept["kinetic energy"] = same(value["kinetic_energy"], (m1 + m2) * v**2 / 2 + c * at_rim**2 / 2)
+    if v is not None and driven and force is not None:
+        drop = abs(value["drop"] or rational(scene.motion.drop))
+        given = side(a) * ((m2 - m1) * g + force) * drop
+        kept["energy with a drive"] = same((m1 + m2 + c) * v**2 / 2, given - f * drop)
+    if v is not None and regime == "no-slip" and not driven:
         drop, time, speed = (abs(value[x] or rational(getattr(scene.motion, y))) for y, x in FALL.items())
         kept["mean speed"] = same(speed * time / 2, drop)
         kept["energy"] = same((l + h + c) * speed**2 / 2, ((h - l) * g - f) * drop)
-    if regime != "no-slip":
+    if driven and regime == "slip":
+        kept["would slip"] = bool(max(t1, t2) > min(t1, t2) * value["capstan_ratio"])
+    elif regime != "no-slip":
         given = scene.mu if regime == "verge" or scene.mu_k is None else scene.mu_k
         mu = rational(given) if value["mu_k"] is None else value["mu_k"]
         kept["(26)"] = same(max(t1, t2), min(t1, t2) * (mu * phi).exp())

@@ -265,6 +265,7 @@ REASONS: dict[str, Callable[[Claims], bool]] = {
     reasons.NEEDS_M: lambda c: c.scene.M is None,
     reasons.NEEDS_R: lambda c: c.scene.R is None,
     reasons.UNKNOWN_SHAPE: lambda c: c.scene.I is not None and c.scene.M is None,
+    reasons.LOCKED_I: lambda c: c.scene.M == inf,
     reasons.LOCKED_AXLE: lambda c: c.scene.M == inf,
     reasons.ONE_SIDED: lambda c: (c.scene.wrap.number - 180) % 360 != 0,
 }

@@ -184,7 +184,7 @@ def test_a_file_is_replaced_only_by_force(atwood: Atwood, tmp_path: Path, typed:
 
 def curves(name: str, mu: str, M: str = "0:50:6", **more: str) -> list[Curve]:
     """Those of a quantity, in the one panel that it has."""
-    (found,) = panels_of(read_sweep({"m1": "1", "m2": "3", "M": M, "mu": mu, **more}), [name])
+    (found,) = panels_of(read_sweep({"m1": "1", "m2": "3", "M": M, "mu": mu, **more}), [name]).values()
     return found
 
 

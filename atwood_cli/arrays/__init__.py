@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..reading.names import read_name, read_quantities
 from ..solver.decisions import Decisions
 from ..solver.quantities import ACCURACIES, Accuracy
-from ..solver.scene import INPUTS, MASSES, MISSING_MASS, SceneError, Terms
+from ..solver.scene import COLUMNS, MASSES, MISSING_MASS, SceneError, Terms
 from .inputs import STATUSES as STATUSES
 from .inputs import VALID as VALID
 from .inputs import GivenColumn, Numbers, groups, read_column
@@ -46,6 +46,9 @@ def solve_arrays(
     R: Numbers | None = None,
     wrap: Numbers = 180.0,
     axle: Numbers | None = None,
+    drop: Numbers | None = None,
+    time: Numbers | None = None,
+    speed: Numbers | None = None,
     accuracy: Accuracy = "certified",
     quantities: Sequence[str] | None = None,
 ) -> dict[str, NDArray[Any]]:
@@ -65,6 +68,8 @@ def solve_arrays(
         I, R: The moment of inertia, in kg m², and the radius, in m.
         wrap: The angle that the string wraps, in degrees.
         axle: The friction of the axle as a force at the rim, in N.
+        drop, time, speed: Of a fall from rest the height, in m, the time, in s, or the speed at its end, in
+            m/s; one gives the others.
         accuracy: "certified" (every regime right, every relative error proven below 2e-14), whose last
             places may depend on NumPy's build and on the other rows; or "exact" (the nearest double), which
             is the same everywhere.
@@ -81,8 +86,8 @@ def solve_arrays(
         SceneError: A mass is missing, an input is no real number or beyond the range of doubles, an accuracy
             or quantity is not known, or shapes do not broadcast (a ValueError).
     """
-    values = (m1, m2, M, mu, mu_k, g, inertia, I, R, wrap, axle)
-    return solve_and_count(dict(zip(INPUTS, values, strict=True)), accuracy, quantities)[0]
+    values = (m1, m2, M, mu, mu_k, g, inertia, I, R, wrap, axle, drop, time, speed)
+    return solve_and_count(dict(zip(COLUMNS, values, strict=True)), accuracy, quantities)[0]
 
 
 def solve_and_count(
@@ -126,7 +131,7 @@ def _read(given: Mapping[str, Numbers | None]) -> tuple[dict[str, GivenColumn], 
     for mass in MASSES:
         if given.get(mass) is None:
             raise SceneError(mass, None, MISSING_MASS)
-    inputs = {name: read_column(name, given.get(name)) for name in INPUTS}
+    inputs = {name: read_column(name, given.get(name)) for name in COLUMNS}
     shape: tuple[int, ...] = ()
     for name, (doubles, _) in inputs.items():
         try:

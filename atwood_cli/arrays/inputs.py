@@ -14,9 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..reading.inputs import is_missing, read_exactly
 from ..solver.scene import (
+    COLUMNS,
     DEFAULTS,
+    FALL,
     INERTIA_FACTORS,
-    INPUTS,
     MASSES,
     Scene,
     SceneError,
@@ -46,6 +47,7 @@ STATUSES = (
     *("valid", "m1", "m2", "M", "mu", "mu_k", "g", "inertia", "R", "wrap"),
     *("no mass", "friction at a free end", "mu_k without mu", "mu_k above mu"),
     *("NaN", "I", "axle", "I and inertia", "I without R", "I with M = 0 or inf"),
+    *(*FALL, "two of drop, time and speed"),
 )
 """The meanings of the codes in ``status``: an input that is outside its domain (or a mass that is not given),
 inputs that do not go together, or one that is not a number."""
@@ -168,7 +170,7 @@ def _kinds(name: str, given: Mapping[str, GivenColumn], own: Mapping[str, Column
         return np.array(Kind.ABSENT)
     sizes = [doubles] if own[name] is doubles else [doubles, own[name]]
     if name == "I":
-        sizes.append(doubles / own["R"] / own["R"])
+        sizes.append(own["I"] / own["R"] / own["R"])
     if name == "axle":
         sizes.append(own[name] / own["g"])
     if absent is None and all(low < size.min() and size.max() < high for size in sizes):
@@ -252,7 +254,7 @@ def _fault(given: Mapping[str, GivenColumn], row: int, terms: Mapping[str, Terms
     if any(map(isnan, numbers.values())):
         return "NaN"
     try:
-        read = {name: read_exactly(name, numbers.get(name)) for name in INPUTS}
+        read = {name: read_exactly(name, numbers.get(name)) for name in COLUMNS}
         Scene.of({name: one._replace(unit=Unit(terms=terms.get(name))) for name, one in read.items()})
     except SceneError as error:
         return error.fault

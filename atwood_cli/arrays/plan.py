@@ -44,7 +44,7 @@ from ..numbers.settling import settle
 from ..solver.decisions import Decisions, LimitingCase
 from ..solver.machine import Machine
 from ..solver.quantities import REGIMES, Accuracy, Undetermined
-from ..solver.scene import INPUTS, Angle, Scene, Terms, in_own_terms
+from ..solver.scene import COLUMNS, FALL, Angle, Motion, Scene, Terms, in_own_terms
 from .doubles import DOUBLES, Doubles, NoProgram, equal, less, proven_double
 from .pairs import PAIRS
 from .program import Program
@@ -75,10 +75,11 @@ class Pattern(NamedTuple):
         """Return the scene of a row, or of all rows; ``column`` gives the number of an input by its name."""
         fields: dict[str, Any] = {
             name: column(name) if value == COLUMN else value
-            for name, value in zip(INPUTS, self.inputs, strict=True)
+            for name, value in zip(COLUMNS, self.inputs, strict=True)
         }
         fields["wrap"] = Angle(fields["wrap"])
-        return Scene(**in_own_terms(fields, dict(self.terms)))
+        own = in_own_terms(fields, dict(self.terms))
+        return Scene(motion=Motion(**{name: own.pop(name) for name in FALL}), **own)
 
 
 USUALLY_SO = ("moves_axle difference", "moves_axle heavy")

@@ -19,8 +19,8 @@ from ..reading.inputs import NO_UNCERTAINTY, read_exactly
 from ..reading.names import divided, input_meant
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
-from ..solver.quantities import NAMES, REGIMES, STANDARD
-from ..solver.scene import INPUTS, MASSES, Input, Scene, SceneError, Unit
+from ..solver.quantities import REGIMES, STANDARD, TABLE_NAMES
+from ..solver.scene import COLUMNS, INPUTS, MASSES, Input, Scene, SceneError, Unit
 from ..tables.cells import EMPTY, has_unit, read_cell
 from ..tables.headings import (
     LIKE_SUM,
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 ERROR = "error"
 ASSUMPTION = ("regime", REGIME_ASSUMED)
-VOCABULARY = Vocabulary(MASS_NAMES | {name.replace("_", ""): name for name in INPUTS})
+VOCABULARY = Vocabulary(MASS_NAMES | {name.replace("_", ""): name for name in (*INPUTS, "drop")})
 
 GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta", "α": "alpha", "θ": "theta"})
 LIKE_INPUTS = {
@@ -199,7 +199,7 @@ class TableTally(Tally):
             counts.append(f"{counted(beyond, 'value')} beyond the range of doubles left empty")
         lines = [f"{counted(self.rows, 'row')}: {'; '.join(filter(None, counts))}."]
         explained = self.asked or STANDARD[:4]  # the regime and the motion
-        ranked = sorted(self.reasons.items(), key=lambda item: (-item[1], NAMES.index(item[0][0])))
+        ranked = sorted(self.reasons.items(), key=lambda item: (-item[1], TABLE_NAMES.index(item[0][0])))
         lines += reasons_in({x: n for x, n in ranked if x[0] in explained and x != ASSUMPTION}, self.rows)
         if self.counts[LIKE] and not self.counts[UNLIKE]:
             most = f"all wraps are less than {LIKE_RADIANS[1]}°"
@@ -232,7 +232,7 @@ def solve_cells(
     cells = cells.select(heading.name for heading in columns.headings)
     as_texts = pl.selectors.decimal() | pl.selectors.by_dtype(pl.Categorical, pl.Enum)
     cells = cells.with_columns(as_texts.cast(pl.String))
-    exact = {x: read_exactly(x, wanted.given.get(x)) for x in INPUTS}
+    exact = {x: read_exactly(x, wanted.given.get(x)) for x in COLUMNS}
     shared = {x: _double(Heading(0, x, x), False, text) for x, text in wanted.given.items()}
     doubles, singles = _doubles(cells, columns)
     if None in shared.values():  # an option that is no double
@@ -294,7 +294,7 @@ def _judge(
 ) -> dict[int, Mapping[str, str]]:
     """Return the conditions that fail in rows of doubles, as what is printed is judged."""
     in_si = ReadColumns([x._replace(unit="", read=Unit(terms=x.read.terms)) for x in columns.headings])
-    inputs = {x: read_exactly(x, shared.get(x)) for x in INPUTS}
+    inputs = {x: read_exactly(x, shared.get(x)) for x in COLUMNS}
     judge = cache(lambda row: failures_of(_answers(in_si, inputs, row), conditions))
     return {row: why for row in rows if (why := judge(doubles.row(row)))} if conditions else {}
 

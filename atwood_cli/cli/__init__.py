@@ -15,6 +15,7 @@ from .. import __version__
 from ..numbers.text import LONGEST_NAME, shortened
 from ..output.text import drop, finish, naming_the_extra, say
 from ..reading.names import input_meant
+from ..solver.quantities import Undetermined
 from ..solver.scene import SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_options
 
@@ -150,6 +151,11 @@ def _why_not_understood(error: Any) -> str:
     hint = f"{error.ctx.command_path} -h" if error.ctx else ""
     words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
     message = shortened(words, LONGEST_NAME)
+    if hasattr(error, "possibilities"):  # there is no such option
+        options = {name: command.params for name, command in program().commands.items()}
+        having = [x for x in options if any(error.option_name in param.opts for param in options[x])]
+        if having:
+            message = f"No such option: {error.option_name}, which is for atwood {', '.join(having)}"
     if "extra argument" in message:
         message += ": names take commas, as a,T1; a value with a blank takes quotation marks, as '200 g'"
     return f"{message}{' See' if message.endswith('?') else '; see'} {hint}" if hint else message
@@ -173,6 +179,7 @@ ERRORS: dict[type[Exception], tuple[int, Callable[[Any], str]]] = {
     SceneError: (WRONG_USAGE, lambda error: error.describe(flag(error.parameter))),
     UsageError: (WRONG_USAGE, _why_not_understood),
     OSError: (COULD_NOT, _why_not_written),
+    Undetermined: (COULD_NOT, lambda error: str(error).replace("`", "")),
     ImportError: (COULD_NOT, str),
     ArithmeticError: (COULD_NOT, str),
     MemoryError: (COULD_NOT, lambda _: "there is not enough memory"),

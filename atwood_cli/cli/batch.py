@@ -16,6 +16,7 @@ from ..tables.sources import FORMATS, check_format, read_format
 from .options import (
     COULD_NOT,
     DONE,
+    FALL,
     SCENE,
     Columns,
     Expect,
@@ -70,8 +71,8 @@ Examples:
   atwood batch scenes.csv --only regime --only acceleration | head
   generate | atwood batch - --from ndjson --allow-errors
 
-Columns {", ".join(INPUTS)} are the options of solve, which give what all
-rows share: numbers in SI units, wrap in degrees, or in the unit of the heading, as m1 (g), M [kg] or R/cm.
+Columns {", ".join(INPUTS)} and drop are the options of solve, which give what
+all rows share: numbers in SI units, wrap in degrees, or in the unit of the heading, as m1 (g), M [kg], R/cm.
 An empty cell, NA, NULL or null is not given. Other columns are kept and named as not read, but one that may
 mean an input is refused, like radius without R. Results follow each row; a row with too few or too many cells
 is an error. Piped rows are solved as they come. Cells become doubles in SI units; solve reads 0.1 as exactly
@@ -83,7 +84,7 @@ if there is no row or one that does not meet what is expected. In NDJSON a bad l
 """
 
 
-@with_options(SCENE)
+@with_options(SCENE | FALL)
 def batch(
     table: Table,
     given: Mapping[str, str | None],

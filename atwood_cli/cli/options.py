@@ -14,6 +14,7 @@ import typer
 from ..output.files import STDOUT, check_free
 from ..output.forms import FORMS, Destination, Picture
 from ..solver.quantities import NAMES, QUANTITIES
+from ..solver.scene import FALL as FALLS
 from ..solver.scene import INPUTS, MEASURED, SceneError, parameter_of
 
 COMPLETING = "_ATWOOD_COMPLETE"
@@ -28,12 +29,12 @@ REMARKS = {
     "mu_k": "; mu if not given",
     "g": ", or a planet, moon or pluto; 9.80665 if not given",
     "inertia": ", or disk, cylinder, hoop, ring, sphere, shell; 0.5 if not given",
-    "I": ", instead of inertia; needs R",
-    "wrap": ": degrees, 3rad, pi/2, 2.5turn; 180 if not given",
+    "I": ", instead of inertia, or the radius of gyration, 18cm; needs R",
+    "wrap": ": degrees, 3rad, pi/2, 2.5turn, 90+90; 180 if not given",
     "axle": ", 15mN, or a torque, 0.4mNm (needs R)",
     "a": ", 0.3g, 5rad/s2: finds M, or a mass, g, mu_k",
     "drop": ": two of drop, time, speed stand for a, one gives the others",
-    "speed": ", or 20rad/s",
+    "speed": ", or 20rad/s, 20rpm",
 }
 
 
@@ -93,6 +94,10 @@ SCENE, MOTION = (
     {name: Annotated[str | None, scene_option(name)] for name in names} for names in (INPUTS, MEASURED)
 )
 """The options of a scene, and of what is measured of its motion, by name."""
+
+
+FALL = {name: MOTION[name] for name in FALLS}
+"""The options of a fall from rest, one of which gives the others."""
 
 
 def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
@@ -283,7 +288,7 @@ def write_options(command: Any, context: Any, formatter: Any) -> None:
         groups.setdefault(getattr(param, "rich_help_panel", None) or "Output", []).append(record)
     for panel in sorted(groups, key=lambda panel: LAST_GROUPS.index(panel) if panel in LAST_GROUPS else -1):
         with formatter.section(panel):
-            if panel == "Scene" and command.name in BRIEF_COMMANDS:
+            if panel in ("Scene", "Measured") and command.name in BRIEF_COMMANDS:
                 names = " ".join(param.opts[0] for param in command.params if param.rich_help_panel == panel)
                 formatter.write_text(f"{names}, as in atwood solve -h")
             else:

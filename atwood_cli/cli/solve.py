@@ -1,6 +1,6 @@
 """`atwood solve`: one scene, as a table, JSON, CSV, bare values, or with its derivation."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from functools import partial
 from typing import Annotated
 
@@ -11,9 +11,9 @@ from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print
 from ..output.text import cell, say
 from ..reading.answers import read_answers
 from ..reading.inputs import read_digits
-from ..reading.names import read_names
-from ..solver.quantities import MEASURED_NAMES, NAMES
-from ..solver.scene import FINDABLE, INPUTS, SceneError
+from ..reading.names import read_results
+from ..solver.quantities import FROM_MOTION, MEASURED_NAMES, NAMES
+from ..solver.scene import FALL, FINDABLE, INPUTS, SceneError
 from .options import (
     COULD_NOT,
     DONE,
@@ -42,10 +42,19 @@ Find = Annotated[
     option(
         "Measured",
         metavar="NAME",
-        words=lambda: {name: INPUTS[name].meaning for name in FINDABLE},
-        help="What the motion finds: m1, m2, M, g, mu_k or axle.",
+        words=lambda: {x: INPUTS[x].meaning if x in INPUTS else "a motor or a brake" for x in FINDABLE},
+        help="What the motion finds: m1, m2, M, g, mu_k, axle or drive.",
     ),
 ]
+
+
+def implied(asked: Set[str], given: Mapping[str, str | None]) -> str | None:
+    """Return what a measured motion is to find, as a result of its own is asked for and it is not given."""
+    finds = [x for x in FINDABLE if given.get(x) is None and not asked.isdisjoint(FROM_MOTION[x])]
+    has_motion = given["a"] is not None or sum(given[x] is not None for x in FALL) > 1
+    return finds[0] if has_motion and len(finds) == 1 else None
+
+
 HELP = """Solve one scene: acceleration, tensions, friction.
 
 \b
@@ -79,24 +88,28 @@ def solve(
         bool, option("Output", "--explain", help="Show the derivation instead, with numbers put in.")
     ] = False,
 ) -> int:
-    names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
+    names, units = read_results("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     conditions = [read_condition(typed) for typed in expect or []]
-    answers = read_answers({**given, "find": find}, read_digits(digits))
+    asked = {*names, *(condition.name for condition in conditions)}
+    answers = read_answers({**given, "find": find or implied(asked, given)}, read_digits(digits))
     if budget and not answers.uncertain:
         raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
     if explain and answers.uncertain:
         raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
+    if explain and units:
+        raise SceneError("explain", None, "is in SI units; leave the units of --only out")
     if picture is not None:
         from ..output.scene_figure import save_scene
 
         save_scene(answers, picture)
-    values = [cell(answers[name]) for name in names]
-    table = partial(print_table, answers=answers, only=names or all_, budget=budget)
+    shown = answers.in_units(units)
+    values = [cell(shown[name]) for name in names]
+    table = partial(print_table, answers=shown, only=names or all_, budget=budget)
     report = Report(
-        json=lambda: record(answers, names, budget),
-        records=lambda: [csv_record(answers, names or answers.names, budget)],
+        json=lambda: record(shown, names, budget),
+        records=lambda: [csv_record(shown, names or answers.names, budget)],
         page=partial(print_steps, answers=answers, names=names) if explain else table,
-        notes=lambda: notes_on_stderr(answers, names, values=not target.form),
+        notes=lambda: notes_on_stderr(shown, names, values=not target.form),
         bare=[] if explain else values,
         below=(lambda page: print_budget(page, answers, names)) if budget else None,
     )

@@ -8,11 +8,12 @@ from ..numbers.text import counted
 from ..output.forms import Destination, Picture, Report, show
 from ..output.text import say
 from ..reading.inputs import read_digits
-from ..reading.names import read_names
+from ..reading.names import read_results
+from ..solver.quantities import TABLE_NAMES
 from ..sweep.ranges import read_sweep
 from ..sweep.sweep_figure import save_sweep
 from ..sweep.sweep_page import SweepPage
-from .options import COULD_NOT, DONE, FIGURE, OUTPUT, SCENE, Columns, Digits, Expect, with_options
+from .options import COULD_NOT, DONE, FALL, FIGURE, OUTPUT, SCENE, Columns, Digits, Expect, with_options
 
 HELP = """Solve a range or a list of scenes.
 
@@ -32,7 +33,7 @@ unit. A curve runs along a whole range, one for each value of a second range or 
 """
 
 
-@with_options(SCENE, OUTPUT, FIGURE)
+@with_options(SCENE | FALL, OUTPUT, FIGURE)
 def sweep(
     given: Mapping[str, str | None],
     target: Destination,
@@ -42,9 +43,10 @@ def sweep(
     expect: Expect = None,
     digits: Digits = None,
 ) -> int:
-    names = list(dict.fromkeys(read_names("only", only or [])))
+    asked, units = read_results("only", only or [], TABLE_NAMES)
+    names = list(dict.fromkeys(asked))
     precision, conditions = read_digits(digits), [*map(read_condition, expect or [])]
-    swept = read_sweep(given, precision)
+    swept = read_sweep(given, precision, units)
     if picture is not None:
         save_sweep(swept, names, precision, picture)
     swept_page = SweepPage(swept, names, precision, conditions)

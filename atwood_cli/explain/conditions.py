@@ -17,11 +17,11 @@ from ..numbers.digits import (
 )
 from ..numbers.text import in_quotes
 from ..reading.names import NAMES_BY_SYMBOL, read_name
-from ..reading.units import UNITS, Malformed, read_number, symbol_of
+from ..reading.units import OTHER_TERMS, Malformed, dimension_of, read_number
 from ..solver.answers import TOO_SMALL, Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NO_NEED, QUANTITIES, REGIMES, Undetermined
-from ..solver.scene import INPUTS, MULTIPLE_OF_G, NOT_GIVEN, WEIGHT, Angle, Input, SceneError, with_unit
+from ..solver.scene import INPUTS, NOT_GIVEN, Angle, Input, SceneError, with_unit
 from .messages import ends_nearby, unmarked
 
 COMPARISON = re.compile("([^<>=]*)(<=|>=|==|<|>)([^<>=]*)")
@@ -34,10 +34,8 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
 HOW_TO_EXPECT = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
-OTHER_TERMS = {"kg": [WEIGHT], "m/s²": [MULTIPLE_OF_G]}
-"""The other terms in which a quantity may be compared, by its unit; g is the scene's."""
 
-SIGNED = ("acceleration", "torque", "rim_acceleration", "angular_acceleration")
+SIGNED = ("acceleration", "tension_difference", "torque", "rim_acceleration", "angular_acceleration")
 """The quantities with the sign of the motion."""
 
 
@@ -69,11 +67,6 @@ def read_condition(typed: str) -> Condition:
     return Condition(typed.strip(), name, sign, bound)
 
 
-def dimension_of(unit: str) -> str | None:
-    """Return the dimension of a unit, None if `UNITS` does not have it: its numbers are then plain."""
-    return next((dimension for dimension, units in UNITS.items() if symbol_of(unit) in units), None)
-
-
 def failures_of(answers: Answers, conditions: Iterable[Condition]) -> dict[str, str]:
     """Return the conditions that fail, as typed, each with what holds instead."""
     return {condition.typed: why for condition in conditions if (why := failure(answers, condition))}
@@ -85,7 +78,7 @@ def failure(answers: Answers, expected: Condition) -> str:
     if not _holds(answers, expected):
         instead = unmarked(_instead(answers, expected))
     elif failing := [end for end in ends if not (end and _holds(end, expected))]:
-        regime = failing[0].decided.regime if failing[0] and expected.name in REGIMES else ""
+        regime = failing[0]["regime"] if failing[0] and expected.name in REGIMES else ""
         instead = f"within two standard uncertainties it may {MAY.get(regime, 'fail')}"
     elif expected.name in REGIMES and any(scene.decided.mu_assumed for scene in (answers, *ends) if scene):
         instead = f"that is only {REGIME_ASSUMED}"
@@ -97,7 +90,7 @@ def failure(answers: Answers, expected: Condition) -> str:
 def _holds(answers: Answers, expected: Condition) -> bool:
     """Decide whether a condition is true; a comparison is not if the quantity has no finite value."""
     if expected.name in REGIMES:
-        return answers.decided.regime == expected.name
+        return bool(answers["regime"] == expected.name)
     bound = expected.bound
     try:
         if expected.sign == "==":
@@ -114,14 +107,15 @@ def _holds(answers: Answers, expected: Condition) -> bool:
 
 def _instead(answers: Answers, expected: Condition) -> str:
     """Say the regime, or the value of the quantity, or why it has none."""
-    if expected.name in REGIMES:
-        return f"it is {answers.decided.regime}"
+    if expected.name in REGIMES and answers["regime"]:
+        return f"it is {answers['regime']}"
     if expected.name in INPUTS and expected.name != answers.decided.motion.finds:
         return f"{expected.name} is an input, and no measured motion finds it"
-    value, reason = answers.answer(expected.name)
+    name = "regime" if expected.name in REGIMES else expected.name
+    value, reason = answers.answer(name)
     if value is None or reason == TOO_SMALL:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
-        return f"{expected.name} has {why}"
+        return f"{name} has {why}"
     bound = expected.bound
     given = None if bound.unit.symbol == "rad" else _in_its_unit(answers, bound)
     if given is not None and not _above(answers, expected.name, bound):

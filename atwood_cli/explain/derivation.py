@@ -203,7 +203,7 @@ def _holds(derivation: Derivation, condition: str, conditions: Mapping[str, bool
         case [name, "exists"]:
             return derivation.answers[name] is not None
         case [regime] if regime in REGIMES:
-            return decided.regime == regime
+            return ("no-slip" if decided.is_driven else decided.regime) == regime
     return conditions[condition] if condition in conditions else bool(getattr(decided, condition))
 
 
@@ -213,7 +213,7 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
     motion = decided.motion
     by = motion.fall if motion.finds and motion.a is None else ()
     at_rest = decided.heavier_side == 0 or decided.pulley_at_rest
-    grips, moves = decided.regime == "no-slip", answers["acceleration"] is not None
+    grips, moves = not decided.at_limit, answers["acceleration"] is not None
     is_disk = scene.I is None and scene.inertia == Fraction(1, 2)
     critical_pulley, heavier, lighter = (
         answers[f"critical_{name}_mass"] is not None for name in ("pulley", "heavier", "lighter")
@@ -221,19 +221,25 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
     by_heavier = heavier and not decided.slips_at_rest
     by_lighter = lighter and not (decided.pulley_is_ideal or decided.pulley_at_rest_until_it_slips)
     return {
-        "equal masses": decided.heavier_side == 0,
+        "equal masses": decided.heavier_side == 0 and not decided.is_driven,
         "m1 is heavier": decided.heavier_side < 0,
         "half a turn": scene.wrap.is_half_turn,
         **{f"a by {x} and {y}": by == (x, y) for x, y in combinations(FALL, 2)},
         "falls": bool(motion.fall),
-        "paper's pulley": is_disk and not decided.has_axle_friction and not decided.pulley_at_rest,
+        "paper's pulley": is_disk
+        and not (decided.has_axle_friction or decided.pulley_at_rest or decided.is_driven),
         "ratio is known": decided.pulley_known and not decided.tensions_equal,
         "mu is positive": bool(scene.mu),
         "held by the axle": decided.axle_holds and not decided.locked,
-        "turning": not (decided.pulley_at_rest or decided.tensions_equal),
+        "turning": decided.is_driven or not (decided.pulley_at_rest or decided.tensions_equal),
+        "speeds up downwards": decided.is_driven and motion.acceleration(1) > 0,
+        "speeds up upwards": decided.is_driven and motion.acceleration(1) < 0,
+        "would slip": decided.is_driven and decided.regime == "slip",
         "masses at rest": grips and at_rest and not decided.motion.finds,
         "a is computed": moves and grips and not at_rest and not decided.motion.finds,
         "a from friction": not grips and not decided.slide_measured,
-        "rim at rest": decided.regime == "slip" and (decided.rim_at_rest or decided.frictionless),
+        "rim at rest": not grips
+        and decided.regime == "slip"
+        and (decided.rim_at_rest or decided.frictionless),
         "verge by the ratio": critical_pulley or by_heavier or by_lighter,
     }

@@ -64,7 +64,13 @@ INTERMEDIATE = {
 """The symbols and units of intermediate values, by the machine's names."""
 UNIT_BY_NAME = {
     **{name: unit for name, (_, unit) in INTERMEDIATE.items()},
-    **{"limiting_friction_mass": "kg", "limiting_drive": "kg", "magnitude": "m/s²", "phi": "rad"},
+    **{
+        "limiting_friction_mass": "kg",
+        "limiting_drive": "kg",
+        "magnitude": "m/s²",
+        "phi": "rad",
+        "I": "kg m²",
+    },
     **dict.fromkeys(("light_tension", "heavy_tension", "difference", "f_axle"), "N"),
     **{"a": "m/s²", "|a|": "m/s²", "a_1": "m/s²", "v": "m/s", "g": "m/s²", "M": "kg", "c": "kg", "b": "kg"},
 }
@@ -123,19 +129,24 @@ class Derivation:
         """Return the symbols that are not in the table of quantities, or differ from it in this scene."""
         decided, scene = self.decided, self.scene
         kin = "_kin" if decided.slides_by_mu_k else ""
+        may_be_negative = decided.slows_down or decided.is_driven
+        fall = {"drop": decided.motion.drop, "final_speed": decided.motion.speed}
+        referred_to = [*REFERRED_TO, *(name for name, given in fall.items() if given is None)]
         symbols = {name: symbol for name, (symbol, _) in INTERMEDIATE.items()} | {
             "limiting_k_minus_1": f"k{kin} - 1",
             "limiting_friction_mass": f"z{kin}",
             "limiting_drive": f"d{kin}",
             "phi": "π" if scene.wrap.is_half_turn else "φ",
-            "magnitude": "a" if decided.heavier_side >= 0 else "a_1" if decided.slows_down else "|a|",
+            "magnitude": "a" if decided.heavier_side >= 0 else "a_1" if may_be_negative else "|a|",
             "light_tension": f"T{self.light}",
             "heavy_tension": f"T{self.heavy}",
             "difference": f"T{self.heavy} - T{self.light}",
             "tension_ratio": f"T{self.heavy}/T{self.light}",
             "rim_acceleration": "a_rim" if decided.regime == "slip" else "a",
-            **{name: QUANTITIES[name].letters for name in REFERRED_TO},
+            **{name: QUANTITIES[name].letters for name in referred_to},
         }
+        if decided.is_driven:
+            symbols |= {"acceleration": "a", "tension_difference": "T2 - T1", "drive_force": "F_drive"}
         if decided.slide_measured:
             symbols |= {"limiting_k_minus_1": "x_kin", "mu_k": "μ_k"}
         return symbols

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
+from operator import methodcaller
 from typing import Any
 
 from ..numbers.digits import (
@@ -23,8 +24,8 @@ from ..numbers.digits import (
 from ..reading.units import MAX_MAGNITUDE
 from ..solver.answers import ABOVE_DOUBLES, BELOW_DOUBLES, Answers
 from ..solver.physics import critical_heavier_mass
-from ..solver.quantities import FROM_MOTION, NAMES, NEEDS_FIND_AXLE, QUANTITIES
-from ..solver.scene import MASSES, with_unit
+from ..solver.quantities import FROM_MOTION, LIMITS_OF_ONE_MASS, NAMES, QUANTITIES
+from ..solver.scene import DRIVE, IN_SI, MASSES, Unit, with_unit
 from .given import as_given, label
 
 
@@ -44,8 +45,12 @@ def measured_quantities(answers: Answers) -> list[str]:
     motion = answers.decided.motion
     given = {"fall_time": motion.time, "final_speed": motion.speed}
     names = [name for name in answers.names[len(NAMES) :] if given.get(name) is None]
+    if answers.decided.scene.R is None and "final_angular_speed" in names:
+        names.remove("final_angular_speed")
     if motion.finds and motion.a is None:
         names.insert(len(FROM_MOTION[motion.finds]), "acceleration")
+    if motion.finds == "M":
+        names.insert(1, "moment_of_inertia")
     return names
 
 
@@ -82,6 +87,8 @@ def ends_nearby(answers: Answers) -> Iterator[tuple[str, str, Any]]:
 def doubts(answers: Answers) -> list[str]:
     """Say which decisions differ near the scene, and at which nearest end."""
     sentences: dict[str, str] = {}
+    if answers.decided.scene.lacking:
+        return []
     for within, x, end in ends_nearby(answers):
         for what, name in DOUBTFUL.items():
             if end.answers and getattr(end.answers.decided, name) != getattr(answers.decided, name):
@@ -107,7 +114,7 @@ def without_uncertainty(answers: Answers, names: Iterable[str]) -> list[str]:
                 value, words = pair[1 - i].value, name
                 if value is not None and value != spread.here:
                     shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(value)))
-                    words += f" ({with_unit(shown, QUANTITIES[name].unit)} at {other_place})"
+                    words += f" ({with_unit(shown, answers.unit_of(name))} at {other_place})"
                 groups.setdefault(f"at {place}, {pair[i].reason}", []).append(words)
     sentences = []
     for reason, group in groups.items():
@@ -131,28 +138,27 @@ LIMITS = {
 USUAL_UNITS = ("", "kg", "g", "mg", "ug", "t", "deg", "°", "rad")
 
 
-def in_typed_units(answers: Answers, names: Sequence[str]) -> list[str]:
+def typed_units(answers: Answers) -> dict[str, Unit]:
+    """Return the units of limits that differ from the usual ones, as an input was given in them."""
+    units = dict[str, Unit]()
+    for limit, inputs in LIMITS.items():
+        typed = (answers.typed(x).unit for x in inputs)
+        if unusual := [unit for unit in typed if unit.symbol not in USUAL_UNITS]:
+            units[limit] = unusual[0]
+    return units
+
+
+def in_typed_units(answers: Answers, names: Sequence[str]) -> Iterator[str]:
     """Say limits, as far as they are among the names, in the unit of an input that has an unusual one."""
-    sentences = list[str]()
-    for name in names:
-        by_input = (_in_unit_of(answers, name, x) for x in LIMITS.get(name, ()) if answers[name])
-        if words := next(filter(None, by_input), ""):
-            sentences.append(words)
-    return sentences
-
-
-def _in_unit_of(answers: Answers, limit: str, x: str) -> str:
-    """Say a limit in the unit of an input, "" if that is a usual one."""
-    unit = answers.typed(x).unit
-    if unit.symbol in USUAL_UNITS:
-        return ""
-    share = answers.decided.scene.in_terms_of(x, Fraction(1)) / unit.size
-    value = answers.to_six_digits.settle(lambda m: getattr(m, limit) * m.ar.number(share))
-    return f"{limit} is {'a weight of ' if unit.terms else ''}{with_unit(format_number(value), unit.symbol)}."
+    units = {name: unit for name, unit in typed_units(answers).items() if name not in answers.units}
+    there = answers.in_units(units).to_six_digits
+    for name in [name for name in names if name in units and answers[name]]:
+        as_weight = "a weight of " if units[name].terms else ""
+        yield f"{name} is {as_weight}{with_unit(_say(there, name), units[name].in_words)}."
 
 
 TO_SEE_IT = "; ask for digits (--digits 17) to see it"
-WAYS = {ABOVE_DOUBLES: TO_SEE_IT, BELOW_DOUBLES: TO_SEE_IT, NEEDS_FIND_AXLE: " (--find axle)"}
+WAYS = {ABOVE_DOUBLES: TO_SEE_IT, BELOW_DOUBLES: TO_SEE_IT}
 """What to type, by the reason that a value is missing."""
 
 
@@ -173,10 +179,15 @@ def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
 
 def verdict(answers: Answers) -> str:
     """Say what the string does, and why."""
-    answers = answers.to_six_digits
+    answers = answers.in_units(IN_SI).to_six_digits
     decided, scene = answers.decided, answers.decided.scene
-    if decided.heavier_side == 0:
+    if scene.lacking:
+        return _what_holds(answers)
+    if decided.heavier_side == 0 and not decided.is_driven:
         return "At rest: the masses are equal, so no friction is needed."
+    if decided.is_driven and decided.regime == "slip":
+        needed = f"`mu` = {as_typed(scene.mu or Fraction(0))} is below the {_enough(answers)} needed"
+        return f"Would slip: {needed}, so no motor or brake gives the masses this motion."
     if decided.regime == "verge":
         return _on_the_verge(answers)
     if decided.regime == "slip":
@@ -186,7 +197,7 @@ def verdict(answers: Answers) -> str:
         most = format_number(_beside(answers, decided.difference)(decided.axle_mass))
         held = f"{does}: axle friction can hold a difference of masses of up to {most} kg."
         return f"{held} {_grips(answers)}" if decided.light else held
-    if decided.tensions_equal:
+    if decided.tensions_equal and not decided.is_driven:
         return "No slip: a massless pulley needs no friction to turn, so both tensions are equal."
     if not decided.light:
         return "No slip: the string's end is fixed to the pulley."
@@ -202,6 +213,20 @@ def verdict(answers: Answers) -> str:
     )
 
 
+def _what_holds(answers: Answers) -> str:
+    """Say between which limits the string holds, as a mass is not given."""
+    decided = answers.decided
+    if not decided.has_one_mass:
+        return "Neither mass is given: `mu` and the wrap give the `capstan_ratio` alone."
+    [mass], [given] = decided.scene.lacking, {*MASSES} - {*decided.scene.lacking}
+    unit = answers.typed(given).unit
+    answers = answers.in_units(dict.fromkeys(LIMITS_OF_ONE_MASS, unit) if unit.symbol else IN_SI)
+    least, *most = (_say(answers, x) for x in LIMITS_OF_ONE_MASS if answers[x] is not None)
+    holds = f"from {least} to {most[0]}" if most else f"at least {least}"
+    on = "" if decided.pulley_known else "on any pulley "
+    return f"`{mass}` is not given: {on}the string holds if `{mass}` is {holds} {unit.in_words or 'kg'}."
+
+
 def _enough(answers: Answers, name: str = "mu_verge") -> str:
     """Say the least coefficient that holds the string."""
     return format_number(answers.rounded(name, _beside(answers, answers.decided.scene.mu)))
@@ -211,7 +236,7 @@ def _grips(answers: Answers) -> str:
     """Say why the string does not slip on the pulley, or that this is assumed."""
     decided, scene = answers.decided, answers.decided.scene
     if scene.mu is None:
-        no_mass = scene.M is None and scene.I is None and not decided.axle_holds
+        no_mass = scene.M is None and scene.I is None and not (decided.axle_holds or decided.is_driven)
         that = "On a massless pulley, that" if no_mass else "That"
         return f"Without `mu`, no slip is assumed. {that} needs `mu` of at least {_enough(answers)}."
     return f"No slip: `mu` = {as_typed(scene.mu)}, and at least {_enough(answers)} is needed."
@@ -247,32 +272,32 @@ def _slips(answers: Answers) -> str:
     return f"{slips}: {mu} is below the {_enough(answers)} needed to hold the string{kinetic}."
 
 
-LOW_GRAVITY = 9.7
-"""Less than this (m/s²) is hardly gravity on Earth, where friction can make masses as slow."""
+LOW_GRAVITY, HIGH_GRAVITY = 9.7, 9.9
+"""Less or more than this (m/s²) is hardly gravity on Earth, where friction or a motor can do the same."""
 LIKE_RADIANS = (0.3, 12.6)
 """The range of degrees that are probably radians, or turns: a short arc, but up to two turns in radians."""
 
 
 def remarks(answers: Answers) -> list[str]:
     """Return further sentences on the scene, as far as they apply."""
-    decided, sentences = answers.decided, []
+    answers, sentences = answers.in_units(IN_SI), list[str]()
+    decided = answers.decided
     if decided.beta is not None and decided.beta > 1:
         shown = strip_zeros(_beside(answers, Fraction(1))(decided.beta))
         sentences.append(
             f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
-    sentences += [*_on_weights(answers), *on_units(answers)]
-    if decided.motion.finds == "g" and decided.scene.g < LOW_GRAVITY and not decided.has_axle_friction:
-        causes = "more inertia, or friction of the axle (`--find axle`)"
-        sentences.append(f"`g` is low for the Earth; {causes}, would slow the masses, too.")
+    sentences += [*_on_weights(answers), *on_units(answers), *_on_what_is_found(answers)]
+    if decided.scene.lacking:
+        return sentences
     mu_k = decided.scene.mu_k
     if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:
         sentences.append("`mu_k` has no effect here, as the string does not slip.")
         if answers["mu_verge"] is not None and answers.settle(lambda m: m.mu_verge - m.ar.number(mu_k)) > 0:
             sentences.append("A string that already slides keeps sliding, as `mu_k` is below `mu_verge`.")
     c, slips_above_a_mass = decided.rim_mass, decided.scene.mu is not None and decided.slips_once_it_moves
-    if slips_above_a_mass and c is not None and not decided.slips_at("heaviest"):
+    if slips_above_a_mass and c is not None and not (decided.is_driven or decided.slips_at("heaviest")):
         beside = _beside(answers, decided.heavy)
         least = answers.rounded("critical_heavier_mass", beside)
         most = answers.settle(
@@ -292,6 +317,26 @@ def remarks(answers: Answers) -> list[str]:
         )
         sentences.append(f"As `M` goes from 0 to `inf`: {', '.join(ranges)}.")
     return sentences
+
+
+def _on_what_is_found(answers: Answers) -> Iterator[str]:
+    """Say for which pulley a mass is found, what else explains an unusual gravity, and what the axle does."""
+    decided, scene = answers.decided, answers.decided.scene
+    finds, g = decided.motion.finds, scene.g
+    if finds in MASSES and scene.M is scene.I is None:
+        yield f"`{finds}` is for a massless pulley, as `M` is not given."
+    if finds == "g" and g < LOW_GRAVITY and not decided.has_axle_friction:
+        causes = "more inertia, or friction of the axle (`--find axle`)"
+        yield f"`g` is low for the Earth; {causes}, would slow the masses, too."
+    if finds == "g" and g > HIGH_GRAVITY:
+        causes = "less inertia, or a motor (`--find drive`)"
+        yield f"`g` is high for the Earth; {causes}, would speed the masses up, too."
+    grips = decided.is_driven and decided.regime == "no-slip" and decided.rim_mass is not None
+    if grips and decided.has_axle_friction:
+        forces = (answers.settle(methodcaller("drive_force_against", way)) for way in (1, -1))
+        down, up = map(format_number, forces)
+        friction = "as the axle's friction opposes the motion"
+        yield f"`drive_force` is {down} N if `m2` descends, and {up} N if it rises, {friction}."
 
 
 def on_units(answers: Answers) -> list[str]:
@@ -322,10 +367,14 @@ def _on_weights(answers: Answers) -> list[str]:
         if x in masses
     ]
     sentences = [f"{', and '.join(each)}."] if each else []
-    if motion.finds in MASSES and motion.a is None and 0 not in (scene.m1, scene.m2):
+    either_way = motion.finds == DRIVE or (motion.finds in MASSES and 0 not in (scene.m1, scene.m2))
+    if either_way and motion.a is None:
         name = "speed" if motion.drop is None else "drop"
-        falls = f"is taken to fall; if it rises, give a `{name}` below 0"
-        sentences.append(f"`m2` {falls if getattr(motion, name) > 0 else f'rises, as `{name}` is below 0'}.")
+        falls, rises = "fall; if it rises", "rises"
+        if motion.finds == DRIVE:
+            falls, rises = "accelerate downwards; if upwards", "accelerates upwards"
+        does = f"is taken to {falls}, give a `{name}` below 0"
+        sentences.append(f"`m2` {does if getattr(motion, name) > 0 else f'{rises}, as `{name}` is below 0'}.")
     return sentences
 
 

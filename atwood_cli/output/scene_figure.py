@@ -98,7 +98,8 @@ def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterato
             greatest, least = (format_number(answers[f"friction_force_{edge}"]) for edge in ("max", "min"))
             why = f". Its vector sum is the greatest that is possible, {greatest} N; the least is {least} N"
         angle = format_number(answers["least_wrap"])
-        yield f"Drawn: friction at its limit on the {angle}° of the arc next to the heavier mass{why}."
+        end = "greater tension" if answers.decided.is_driven else "heavier mass"
+        yield f"Drawn: friction at its limit on the {angle}° of the arc next to the {end}{why}."
     elif kind:
         yield say_profile(answers, kind)
         if force := answers["friction_force"]:
@@ -107,6 +108,8 @@ def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterato
         turns = _number(answers.settle(lambda m: answers.decided.scene.wrap.degrees(m.ar) / 360), answers)
         which = ", and the forces on the one at the heavier mass are drawn" if kind else ""
         yield f"There are {turns} turns{which}."
+    if answers.decided.is_driven and answers["drive_force"] is not None:
+        yield f"The motor or the brake, {format_number(answers['drive_force'])} N at the rim, is not drawn."
     if not answers.decided.ends_hang_down:
         yield "m2 hangs over a guide that is not drawn." if kind else "The mass is not drawn."
 
@@ -136,12 +139,13 @@ def _draw_pulley(axes: "Axes", answers: Answers, phi: float) -> None:
         elif answers.decided.ends_hang_down:
             axes.plot([end.real] * 2, [0, -STRING], color=FAINT, lw=2.4, solid_capstyle="butt")
     axes.text(0, 0.26, _pulley(answers), ha="center", va="center", size=8)
-    side = answers.decided.heavier_side
-    above = 1j * np.exp(-1j * side * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
-    if answers["rim_acceleration"]:
-        _draw_arc(axes, ROTATION_AT * (above[::-1] if answers.decided.slows_down else above), PURPLE, "white")
+    clockwise = 1j * np.exp(-1j * np.linspace(-0.6, 0.6, 40))  # as m2 descends
+    rim_acceleration = answers["rim_acceleration"]
+    if rim_acceleration:
+        _draw_arc(axes, ROTATION_AT * clockwise[:: 1 if rim_acceleration > 0 else -1], PURPLE, "white")
     if friction := _axle_friction(answers):
-        _draw_arc(axes, AXLE_AT * above.conj(), ORANGE, ORANGE)
+        way = rim_acceleration if answers.decided.is_driven else answers.decided.heavier_side
+        _draw_arc(axes, AXLE_AT * clockwise.conj()[:: 1 if way > 0 else -1], ORANGE, ORANGE)
         words = f"axle friction\nat the rim\n= {friction} N"
         axes.text(0, -0.55, words, ha="center", va="center", size=8, color=ORANGE)
 

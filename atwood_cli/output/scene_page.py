@@ -10,7 +10,7 @@ from ..explain.given import VERSION, inputs_with_effect, scene_record, terms_rec
 from ..explain.messages import measured_quantities, notes, reasons, remarks, unmarked, verdict
 from ..numbers.digits import rounding_to_place, rounding_to_uncertainty, strip_zeros, with_uncertainty
 from ..solver.answers import Answers
-from ..solver.quantities import MEASURED_NAMES, QUANTITIES, cited
+from ..solver.quantities import LIMITS_OF_ONE_MASS, MEASURED_NAMES, QUANTITIES, cited
 from ..solver.scene import with_unit
 from .files import printable
 from .page import Page
@@ -32,7 +32,7 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
         "scene": scene_record(answers.decided.scene, answers.round),
         "terms": terms_record(answers.decided.scene, answers.round),
         "found": [answers.decided.motion.finds] if answers.decided.motion.finds else [],
-        "regime": answers.decided.regime,
+        "regime": answers["regime"],
         **absent,
         **results,
         **{key: values and absent | values for key, values in uncertain.items()},
@@ -73,6 +73,8 @@ MAIN = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force")
 def main_quantities(answers: Answers) -> list[str]:
     """Return the names of the quantities that a table shows unless all are asked for."""
     decided, scene = answers.decided, answers.decided.scene
+    if scene.lacking:
+        return ["capstan_ratio", *(LIMITS_OF_ONE_MASS if decided.has_one_mass else ())]
     has_mu = scene.mu is not None
     bounded = has_mu and answers["friction_force"] is None
     also = {
@@ -80,18 +82,18 @@ def main_quantities(answers: Answers) -> list[str]:
         "friction_force_max": bounded,
         "axle_force": decided.has_axle_friction and decided.ends_hang_down,
         "torque": scene.R is not None,
-        "rim_acceleration": decided.regime == "slip",
-        "angular_acceleration": scene.R is not None,
-        "critical_pulley_mass": has_mu and not decided.locked,
+        "rim_acceleration": decided.regime == "slip" and not decided.is_driven,
+        **dict.fromkeys(("angular_acceleration", "final_angular_speed"), scene.R is not None),
+        "critical_pulley_mass": has_mu and not decided.slips_by_tensions,
         "critical_heavier_mass": has_mu and decided.pulley_known,
-        "critical_lighter_mass": has_mu and decided.locked,
+        "critical_lighter_mass": has_mu and decided.slips_by_tensions,
         "safety_factor": has_mu and decided.pulley_known and not decided.tensions_equal,
-        "least_wrap": has_mu and (decided.locked or not scene.wrap.is_half_turn),
+        "least_wrap": has_mu and (decided.slips_by_tensions or not scene.wrap.is_half_turn),
     }
     return [name for name in answers.names[1:] if also.get(name, name in MAIN or name in MEASURED_NAMES)]
 
 
-REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
+REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red", None: "yellow"}
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 
@@ -123,7 +125,7 @@ def _print_head(page: Page, answers: Answers, measured: str = "") -> None:
     page.say(", ".join(given.values()))
     if measured:
         page.say(measured, style="bold")
-    page.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.decided.regime]}")
+    page.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers['regime']]}")
 
 
 def page_as_text(answers: Answers) -> str:
@@ -141,17 +143,19 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about, decided = QUANTITIES[name], answers.decided
-        equation = cited(name, decided.regime == "slip", decided.has_axle_friction and not decided.locked)
+        slips = answers["regime"] == "slip" and not decided.is_driven
+        axle_enters = decided.has_axle_friction and not decided.slips_by_tensions
+        equation = cited(name, slips, axle_enters, decided.is_driven)
         at_limit = name.startswith("friction_force") and decided.mu_assumed  # and has a single value then
         shown = f"{name} at mu_verge" if at_limit else name
-        row = [shown, value, about.unit, about.symbol, equation]
+        row = [shown, value, answers.unit_of(name), about.symbol, equation]
         groups.setdefault(about.group, []).append(row)
     return list(groups.values())
 
 
 def quantity_in_words(answers: Answers, name: str) -> str:
     """Say a quantity with its value, uncertainty and unit."""
-    return f"{name} = {with_unit(_with_uncertainty(answers, name), QUANTITIES[name].unit)}"
+    return f"{name} = {with_unit(_with_uncertainty(answers, name), answers.unit_of(name))}"
 
 
 def _with_uncertainty(answers: Answers, name: str) -> str:

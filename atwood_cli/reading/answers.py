@@ -17,7 +17,7 @@ def read_answers(given: Mapping[str, Any], digits: int | None) -> Answers:
     inputs = {name: read_input(name, given.get(name), name in signed) for name in (*INPUTS, *MEASURED)}
     find = given.get("find")
     if find is None and all(inputs[name].given is None for name in MEASURED):
-        scene = Scene.of(inputs)
+        scene = Scene.of(inputs, may_lack=True)
     else:
         from ..solver.inverse import read_motion
 

@@ -4,8 +4,9 @@ import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from ..numbers.text import nearest
-from ..solver.quantities import MEASURED_NAMES, NAMES, QUANTITIES, STANDARD
-from ..solver.scene import INPUTS, MEASURED, SceneError
+from ..solver.quantities import MEASURED_NAMES, QUANTITIES, STANDARD, TABLE_NAMES
+from ..solver.scene import INPUTS, MEASURED, SceneError, Unit
+from .units import Malformed, read_unit_of_result
 
 SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
 ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
@@ -63,12 +64,30 @@ def input_meant(word: str) -> str:
 def read_names(
     parameter: str,
     typed: Iterable[str],
-    known: Collection[str] = NAMES,
+    known: Collection[str] = TABLE_NAMES,
     kind: str = "quantity",
     symbols: Mapping[str, str] = NAMES_BY_SYMBOL,
 ) -> list[str]:
     """Read names; a word may hold several with commas between. Raises SceneError."""
     return [read_name(parameter, word, known, kind, symbols) for word in divided(typed)]
+
+
+def read_results(
+    parameter: str, typed: Iterable[str], known: Collection[str]
+) -> tuple[list[str], dict[str, Unit]]:
+    """Read names of quantities, and the units that they are to be in: T2 in lbf. Raises SceneError."""
+    names, units = list[str](), dict[str, Unit | None]()
+    for words in divided(typed):
+        word, _, unit = map(str.strip, words.partition(" in "))
+        names.append(name := read_name(parameter, word, known, "quantity", NAMES_BY_SYMBOL))
+        try:
+            own = "" if name == "regime" else QUANTITIES[name].unit
+            read = read_unit_of_result(unit, own) if unit else None
+        except Malformed as error:
+            raise SceneError(parameter, words, str(error)) from None
+        if units.setdefault(name, read) != read:
+            raise SceneError(parameter, words, f"asks for {name} in two units; take one")
+    return names, {name: unit for name, unit in units.items() if unit}
 
 
 def read_quantities(words: Sequence[str] | None) -> list[str]:
@@ -93,6 +112,8 @@ def read_name(
     hint = f"; did you mean {meant}?" if meant in known else ""
     known_names = "; see atwood quantities" if kind == "quantity" else f"; there are {', '.join(known)}"
     a_kind = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+    if kind == "quantity" and " in " in word:
+        raise SceneError(parameter, word, "has a unit, which only solve and sweep take; leave it out")
     if kind == "quantity" and word in MEASURED_NAMES and word not in INPUTS:
         raise SceneError(parameter, word, "follows from a measured motion, which only solve takes")
     if word in INPUTS and not kind.startswith("input"):

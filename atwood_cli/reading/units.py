@@ -6,11 +6,13 @@ import re
 from collections.abc import Mapping, Sequence
 from decimal import ROUND_FLOOR, Decimal
 from fractions import Fraction
+from functools import cache
 from math import inf
 
 from ..numbers.digits import as_typed, to_digits
+from ..numbers.interval import Enclosures
 from ..numbers.text import in_quotes, without_blanks
-from ..solver.scene import MULTIPLE_OF_G, STANDARD_GRAVITY, Input, Terms, Unit
+from ..solver.scene import MULTIPLE_OF_G, STANDARD_GRAVITY, WEIGHT, Input, Terms, Unit
 
 FOOT, INCH, POUND = Fraction("0.3048"), Fraction("0.0254"), Fraction("0.45359237")
 POUND_FORCE = POUND * Fraction(STANDARD_GRAVITY)
@@ -18,7 +20,7 @@ POUND_FORCE = POUND * Fraction(STANDARD_GRAVITY)
 # fmt: off
 UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
     "mass": {
-        "kg": "1", "g": "1e-3", "mg": "1e-6", "ug": "1e-9", "t": "1e3",
+        "kg": "1", "g": "1e-3", "mg": "1e-6", "ug": "1e-9", "t": "1e3", "Mg": "1e3",
         "lb": POUND, "lbs": POUND, "oz": POUND / 16, "st": POUND * 14, "slug": POUND_FORCE / FOOT,
     },
     "length": {
@@ -31,17 +33,18 @@ UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
         "N": "1", "mN": "1e-3", "daN": "10", "kN": "1e3",
         "lbf": POUND_FORCE, "kip": POUND_FORCE * 1000, "kgf": STANDARD_GRAVITY,
     },
+    "energy": {"J": "1", "mJ": "1e-3", "kJ": "1e3", "ft lbf": FOOT * POUND_FORCE},
     "torque": {
-        "N m": "1", "mN m": "1e-3", "N cm": "1e-2",
-        "lbf ft": POUND_FORCE * FOOT, "lbf in": POUND_FORCE * INCH,
+        "N m": "1", "mN m": "1e-3", "N cm": "1e-2", "daN m": "10", "kN m": "1e3", "kgf m": STANDARD_GRAVITY,
+        "lbf ft": POUND_FORCE * FOOT, "ft lbf": FOOT * POUND_FORCE, "lbf in": POUND_FORCE * INCH,
     },
     "acceleration": {"m/s2": "1", "m s-2": "1", "cm/s2": "1e-2", "ft/s2": FOOT, "N/kg": "1"},
     "angular acceleration": {"rad/s2": "1", "rad s-2": "1"},
     "speed": {
         "m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3", "km/h": Fraction(5, 18),
-        "ft/s": FOOT, "ft/min": FOOT / 60,
+        "ft/s": FOOT, "ft/min": FOOT / 60, "mph": FOOT * 5280 / 3600, "knot": Fraction(1852, 3600),
     },
-    "angular speed": {"rad/s": "1"},
+    "angular speed": {"rad/s": "1", "rpm": "pi/30"},
     "moment of inertia": {
         "kg m2": "1", "kg cm2": "1e-4", "g cm2": "1e-7", "lb ft2": POUND * FOOT**2, "lb in2": POUND * INCH**2,
     },
@@ -51,6 +54,11 @@ UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
 
 A unit may also have no blank, or a dot, a star, ^2 or ².
 """
+AMBIGUOUS = {
+    **{"ton": "2000 lb, 2240 lb or 1000 kg", "tonf": "2000 lbf, 2240 lbf or 1000 kgf"},
+    "cwt": "100 lb, 112 lb or 50 kg",
+}
+"""Units that are not taken, and what they may be."""
 
 MAX_DIGITS, MAX_EXPONENT = 1000, 500
 """The limits of a number, as it is typed and in SI units."""
@@ -95,6 +103,9 @@ WORDS_FOR_UNITS = {
     "N": "newton newtons Н",
     **{"mg": "мг", "mm": "мм", "ms": "мс", "min": "мин", "mN": "мН", "m/s2": "м/с2", "cm/s2": "см/с2"},
     **{"in": "inch inches", "ft": "foot feet", "lb": "pound pounds lbm", "rad": "radian radians"},
+    **{"lbf ft": "lbft", "ft lbf": "ftlb", "lbf in": "lbin inlb inlbf"},
+    **{"mph": "mi/h", "knot": "knots kn kt", "rpm": "rev/min r/min"},
+    **{"ton": "ton tons", "tonf": "tonf tonsf", "cwt": "cwt"},
 }
 """Other words for units."""
 _SYMBOLS |= {word: symbol for symbol, words in WORDS_FOR_UNITS.items() for word in words.split()}
@@ -190,6 +201,11 @@ def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> 
     if dimension == "time" and (clock := STOPWATCH.fullmatch(text)):
         hours, minutes, seconds = map(_decimal, clock.groups(default="0"))
         return Input(limited((hours * 60 + minutes) * 60 + seconds), unit=Unit("s"))
+    if dimension == "angle" and len(angles := re.split(r"(?<=[^eE ]) ?\+ ?", text)) > 1:
+        read_angles = [_read_exactly(angle, dimension, others) for angle in angles]
+        if len({angle.unit.symbol == "rad" for angle in read_angles}) > 1:
+            raise Malformed("adds radians to another unit; write the same unit at each angle")
+        return read_angles[0]._replace(number=limited(sum((x.number for x in read_angles), Fraction(0))))
     if share := SHARE.fullmatch(text):
         read = _read_exactly(share[1], dimension, others)
         return read._replace(number=limited(read.number * _quotient(f"1/{share[2]}")))
@@ -205,7 +221,7 @@ def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> 
         raise Malformed(f"must be a plain number, without the {in_quotes(symbol)}")
     unit = read_unit(symbol, dimension, others)
     value *= unit.size
-    if is_quotient:
+    if is_quotient or symbol_of(symbol) == "rpm":
         limited(value)
     else:
         digits = re.sub("[^0-9]", "", as_typed(value, inf).partition("e")[0]).lstrip("0")
@@ -257,10 +273,38 @@ def read_unit(text: str, dimension: str, others: Sequence[Terms] = ()) -> Unit:
     """Return a unit of a dimension, or of the terms of others. Raises Malformed if it is none."""
     terms_by_dimension = {dimension: None, **{terms.dimension: terms for terms in others}}
     units = {symbol: name for name in terms_by_dimension for symbol in UNITS.get(name, {})}
-    if (symbol := symbol_of(text)) not in units:
+    if MULTIPLE_OF_G in others and text == MULTIPLE_OF_G.unit:
+        return Unit(text, terms=MULTIPLE_OF_G)
+    if (symbol := symbol_of(text)) in AMBIGUOUS:
+        raise Malformed(f"has the unit {in_quotes(text)}, which may be {AMBIGUOUS[symbol]}")
+    if symbol not in units:
         raise Malformed(f"has the unit {in_quotes(text)}; it takes {', '.join(units)}")
     name = units[symbol]
-    return Unit(symbol, Fraction(UNITS[name][symbol]), terms_by_dimension[name])
+    size = UNITS[name][symbol]
+    return Unit(symbol, pi() / 30 if size == "pi/30" else Fraction(size), terms_by_dimension[name])
+
+
+OTHER_TERMS = {"kg": [WEIGHT], "m/s²": [MULTIPLE_OF_G]}
+"""The other terms in which a quantity may be said or compared, by its unit; g is the scene's."""
+
+
+def dimension_of(unit: str) -> str | None:
+    """Return the dimension of a unit, None if `UNITS` does not have it: its numbers are then plain."""
+    return next((dimension for dimension, units in UNITS.items() if symbol_of(unit) in units), None)
+
+
+def read_unit_of_result(text: str, unit: str) -> Unit:
+    """Return the unit that a quantity, whose own is ``unit``, is to be in. Raises Malformed."""
+    if (dimension := dimension_of(unit)) is None:
+        raise Malformed("asks for the unit of a plain number; leave it out")
+    read = read_unit(text, dimension, OTHER_TERMS.get(unit, ()))
+    return read._replace(size=180 / pi()) if read.symbol == "rad" else read
+
+
+@cache
+def pi() -> Fraction:
+    """Return π to more digits than any result has."""
+    return Fraction(Enclosures(MAX_DIGITS + 100).pi.lo)
 
 
 def symbol_of(unit: str) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from copy import copy
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -14,8 +15,8 @@ from ..numbers.interval import LARGEST_EXPONENT
 from ..numbers.settling import settle
 from .decisions import Decisions
 from .machine import Machine
-from .quantities import FROM_MOTION, NAMES, Undetermined
-from .scene import NOT_GIVEN, Input, Scene
+from .quantities import FROM_MOTION, NAMES, NEEDS_MASSES, QUANTITIES, Undetermined
+from .scene import IN_SI, NOT_GIVEN, Input, Scene, Unit, Units
 
 if TYPE_CHECKING:
     from ..numbers.rational import Arithmetic, N, Quantity
@@ -36,14 +37,26 @@ class Answer(NamedTuple):
     reason: str = ""
 
 
+def _in_unit(name: str, unit: Unit, machine: Machine[N]) -> N:
+    """Return a quantity in another unit, which may be one of other terms."""
+    value = getattr(machine, name)
+    if unit.terms:
+        value = unit.terms.number(value, machine.ar.number(getattr(machine.scene, unit.terms.by)))
+    in_unit: N = value / machine.ar.number(unit.size)
+    return in_unit
+
+
 class Answers:
     """The quantities of a scene, each computed when it is asked for: as doubles, or to ``digits`` digits.
 
-    Of the ``inputs`` as they were given, none of which is needed here, pages have the units.
+    Of the ``inputs`` as they were given, none of which is needed here, pages have the units. Values are in
+    SI units and degrees, or those in ``units`` in another unit.
     """
 
-    def __init__(self, scene: Scene, digits: int | None = None, inputs: Mapping[str, Input] = {}) -> None:
-        self.decided, self.inputs = Decisions(scene), inputs
+    def __init__(
+        self, scene: Scene, digits: int | None = None, inputs: Mapping[str, Input] = {}, units: Units = IN_SI
+    ) -> None:
+        self.decided, self.inputs, self.units = Decisions(scene), inputs, units
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._by_digits: dict[int | None, Answers] = {}
         self._round_to(digits)
@@ -60,6 +73,20 @@ class Answers:
             self._by_digits[digits] = copy(self)
             self._by_digits[digits]._round_to(digits)
         return self._by_digits[digits]
+
+    def in_units(self, units: Units) -> Answers:
+        """Return the same quantities in these units, others in SI units and degrees."""
+        if units == self.units:
+            return self
+        return type(self)(self.decided.scene, self.digits, self.inputs, units)
+
+    def unit_of(self, name: str) -> str:
+        """Return the unit of a quantity's value."""
+        return self.units[name].in_words if name in self.units else QUANTITIES[name].unit
+
+    def quantity(self, name: str) -> OnMachine:
+        """Return a quantity as a number of a machine, in its unit."""
+        return partial(_in_unit, name, self.units[name]) if name in self.units else attrgetter(name)
 
     def typed(self, x: str) -> Input:
         """Return an input as it was given."""
@@ -84,9 +111,10 @@ class Answers:
     def answer(self, name: str) -> Answer:
         """Return the value of a quantity, and why it is missing."""
         if name == "regime":
-            return Answer(self.decided.regime)
+            lacks = self.decided.scene.lacking
+            return Answer(None, NEEDS_MASSES) if lacks else Answer(self.decided.regime)
         if name not in self._answers:
-            self._answers[name] = Answer(*self._settled(attrgetter(name)))
+            self._answers[name] = Answer(*self._settled(self.quantity(name)))
         return self._answers[name]
 
     def _settled(self, quantity: OnMachine) -> tuple[Any, str]:
@@ -126,7 +154,7 @@ class Answers:
 
     def rounded(self, name: str, round_: Rounding[Decimal]) -> Decimal:
         """Return the value of a quantity that exists, rounded in another way."""
-        return Decimal(self.settle(attrgetter(name), round_))
+        return Decimal(self.settle(self.quantity(name), round_))
 
     def settle(self, quantity: OnMachine, round_: Rounding[Any] | None = None) -> float | Decimal:
         """Return any number of a machine, rounded as quantities are or by ``round_``. Raises Undetermined."""

@@ -33,7 +33,8 @@ from ..numbers.lazy import lazy
 from ..numbers.rational import EXACT
 from ..numbers.settling import is_positive
 from . import physics
-from .scene import FALL, Scene
+from .quantities import NEEDS_MASSES, Undetermined
+from .scene import DRIVE, FALL, Scene
 
 if TYPE_CHECKING:
     from ..numbers.rational import Arithmetic, N, Quantity
@@ -62,29 +63,48 @@ class Decisions:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.motion = scene, scene.motion
+        self.has_one_mass = len(scene.lacking) == 1
+        self.is_driven = scene.motion.finds == DRIVE
+        """Whether a motor or a brake moves the pulley as was measured."""
+        of_any_pulley = self.has_one_mass and scene.M is scene.I is None
+        self.slips_by_tensions = self.is_driven or of_any_pulley or isinstance(scene.M, float)
+        """Whether the ratio of two weights is that of the tensions: limits are those of a pulley at rest."""
         self._ratios: dict[tuple[LimitingCase, Arithmetic[Any]], Any] = {}
 
     @lazy
     def heavier_side(self) -> int:
-        """1 if m2 is the heavier mass, -1 if m1 is, else 0. Equal masses that slow down have one, too."""
+        """1 if m2 is the heavier mass, -1 if m1 is, else 0. Equal masses that slow down have one, too.
+
+        On a driven pulley the side with the greater tension counts as the heavier.
+        """
         if self.motion.finds == "axle":
             return self.motion.direction
+        if self.scene.lacking:
+            raise Undetermined(NEEDS_MASSES)
+        if self.is_driven:
+            a, g = self.motion.acceleration(1), self.scene.g
+            difference = physics.difference_of_moving_masses(self.scene.m1, self.scene.m2, a, g)
+            return (difference > 0) - (difference < 0)
         return (self.scene.m2 > self.scene.m1) - (self.scene.m2 < self.scene.m1)
 
     @lazy
     def light(self) -> Fraction:
-        """The lighter mass (kg)."""
+        """The lighter mass (kg), or the one that is given: limits of the other one take it for either."""
+        if self.has_one_mass:
+            return self.scene.m2 if self.scene.m1 is None else self.scene.m1
         return self.scene.m1 if self.heavier_side >= 0 else self.scene.m2
 
     @lazy
     def heavy(self) -> Fraction:
-        """The heavier mass (kg)."""
+        """The heavier mass (kg), or the one that is given."""
+        if self.has_one_mass:
+            return self.light
         return self.scene.m2 if self.heavier_side >= 0 else self.scene.m1
 
     @property
     def one_mass_is_0(self) -> bool:
         """Whether one mass is 0; or below, as a mass that is found with an uncertain acceleration may be."""
-        return is_number(self.light) and self.light <= 0
+        return not self.scene.lacking and is_number(self.light) and self.light <= 0
 
     @lazy
     def locked(self) -> bool:
@@ -134,7 +154,7 @@ class Decisions:
     @lazy
     def axle_holds(self) -> bool:
         """Whether the axle's friction holds unequal masses at rest, h - l <= b; not masses that slow down."""
-        if self.motion.finds == "axle":
+        if self.motion.finds in ("axle", DRIVE) or self.scene.lacking:
             return False
         return self.has_axle_friction and self.heavier_side != 0 and not self.moves_axle("difference")
 
@@ -155,13 +175,13 @@ class Decisions:
 
     @property
     def pulley_known(self) -> bool:
-        """Whether the motion of a string that grips is known: the pulley's inertia is, or it is at rest."""
-        return self.pulley_at_rest or self.rim_mass is not None
+        """Whether the motion of a string that grips is known: measured, or the pulley is known or rests."""
+        return self.is_driven or self.pulley_at_rest or self.rim_mass is not None
 
     @property
     def pulley_is_ideal(self) -> bool:
         """Whether the pulley has neither mass nor friction in its axle."""
-        return is_zero(self.rim_mass) and not self.has_axle_friction
+        return is_zero(self.rim_mass) and not self.has_axle_friction and not self.is_driven
 
     @property
     def tensions_equal(self) -> bool:
@@ -196,7 +216,9 @@ class Decisions:
     @property
     def assumptions(self) -> dict[str, str]:
         """The quantities that depend on what is only assumed, and the assumption."""
-        is_massless = self.scene.mu is None is self.scene.M and self.pulley_mass == 0
+        if self.scene.mu is not None:
+            return {}
+        is_massless = self.scene.M is None and self.pulley_mass == 0
         moves = self.heavier_side != 0 and self.tensions_equal and not self.one_mass_is_0
         regime = {"regime": REGIME_ASSUMED} if self.mu_assumed else {}
         return regime | ({"mu_verge": MASSLESS_ASSUMED} if is_massless and moves else {})
@@ -225,14 +247,14 @@ class Decisions:
 
     @lazy
     def measured_acceleration(self) -> Fraction:
-        """The measured acceleration (m/s²), positive when the heavier mass descends."""
-        return self.motion.acceleration(self.heavier_side)
+        """The measured acceleration (m/s²), positive when the heavier mass descends; of equal ones, m2."""
+        return self.motion.acceleration(-1 if self.heavier_side < 0 else 1)
 
     @lazy
     def fall(self) -> tuple[Fraction | None, ...]:
         """Height (m), time (s) and speed (m/s) of a fall, without signs; None if one is not given."""
         given = (getattr(self.motion, name) for name in FALL)
-        return tuple(-x if x and x < 0 else x for x in given)
+        return tuple(-x if x is not None and is_number(x) and x < 0 else x for x in given)
 
     @property
     def slows_down(self) -> bool:
@@ -240,11 +262,16 @@ class Decisions:
         return self.motion.finds == "axle" and self.measured_acceleration < 0
 
     @property
+    def at_limit(self) -> bool:
+        """Whether friction at its limit decides the tensions; on a driven pulley the motion does."""
+        return self.regime != "no-slip" and not self.is_driven
+
+    @property
     def frictionless(self) -> bool:
         """Whether the string moves, or rests, without friction."""
         if self.slide_measured:
             return not self.slide_ratio_minus_1(EXACT)
-        return self.tensions_equal or (self.regime != "no-slip" and is_zero(self.limiting_mu))
+        return self.tensions_equal or (self.at_limit and is_zero(self.limiting_mu))
 
     @lazy
     def can_slip(self) -> bool:
@@ -264,15 +291,15 @@ class Decisions:
 
     @property
     def pulley_at_rest_until_it_slips(self) -> bool:
-        """Whether the pulley is at rest when the lighter mass is the least that the string holds."""
-        if self.locked or not self.has_axle_friction:
-            return self.locked
+        """Whether the pulley rests, or is driven, when the lighter mass is the least that holds."""
+        if self.slips_by_tensions or not self.has_axle_friction:
+            return self.slips_by_tensions
         return not self.moves_axle("heavy") or self.slips_at("lightest_at_rest")
 
     @property
     def slips_at_rest(self) -> bool:
-        """Whether the critical heavier mass makes the string slip on a pulley that is at rest."""
-        return self.locked or self.slips_once_it_moves
+        """Whether the critical heavier mass makes the string slip on a pulley that is at rest, or driven."""
+        return self.slips_by_tensions or self.slips_once_it_moves
 
     @lazy
     def rim_at_rest(self) -> bool:
@@ -313,6 +340,8 @@ class Decisions:
         return ratio
 
     def _ratio_minus_1(self, at: LimitingCase, ar: Arithmetic[N]) -> N:
+        if self.is_driven:
+            return self.slide_ratio_minus_1(ar)
         l, h, b = self.light, self.heavy, self.axle_mass
         # A limit does not read the pulley's mass: in a sweep of it the caches of `interval` have the limit.
         c = self.rim_mass if at in ("as_given", "heaviest") else ZERO
@@ -350,6 +379,6 @@ class Decisions:
         return ar.log1p(ratio_minus_1) - ar.number(mu) * self.scene.wrap.radians(ar)
 
     def slide_ratio_minus_1(self, ar: Arithmetic[N]) -> N:
-        """Return T_h/T_l - 1 of a string that slides with the measured acceleration."""
+        """Return T_h/T_l - 1 of masses with the measured acceleration."""
         a = self.measured_acceleration
         return physics.slide_ratio_minus_1(*map(ar.number, (self.light, self.heavy, a, self.scene.g)))

@@ -20,9 +20,9 @@ from ..numbers.rational import EXACT
 from . import physics
 from .decisions import ZERO, Decisions
 from .quantities import Undetermined
-from .scene import FALL, INPUTS, MASSES, MEASURED, Input, Scene, SceneError, parameter_of
+from .scene import DRIVE, FALL, INPUTS, MASSES, MEASURED, Input, Scene, SceneError, parameter_of
 
-MOTOR = "for a motor or a brake see examples/hoist.md"
+MOTOR = "for a motor or a brake find the drive"
 IF_IT_SLOWS_DOWN = "for masses that slow down give a and --find axle"
 NOT_BELOW_0 = "must be above 0, unless a mass is found from it: then it is below 0 if m2 rises"
 
@@ -41,10 +41,10 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
         rule = f"is one too many beside {fall[0]} and {fall[1]}, which give the acceleration; leave one out"
         raise SceneError(excess[0], inputs[excess[0]].given, rule)
     name = "a" if "a" in given else fall[-1]
-    finds = _unknown(inputs, find, name) if is_measured else None
-    scene = Scene.of(inputs, finds)
+    finds = _unknown(inputs, find) if is_measured else None
+    scene = Scene.of(inputs, finds, may_lack=not is_measured)
     scene = scene._replace(motion=scene.motion._replace(direction=_direction(scene)))
-    m2_may_rise = finds in MASSES and "a" not in given and 0 not in (scene.m1, scene.m2)
+    m2_may_rise = "a" not in given and (finds == DRIVE or (finds in MASSES and 0 not in (scene.m1, scene.m2)))
     if below_0 := [x for x in fall if getattr(scene.motion, x) < 0 and not m2_may_rise]:
         raise SceneError(below_0[0], inputs[below_0[0]].given, NOT_BELOW_0)
     if by_g := [(x, terms.words) for x, terms in scene.terms if finds == terms.by]:
@@ -65,17 +65,15 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
     return scene
 
 
-def _unknown(inputs: Mapping[str, Input], find: str | None, name: str) -> str:
+def _unknown(inputs: Mapping[str, Input], find: str | None) -> str:
     """Return the input that a motion finds: the one that is asked for, or is lacking. Raises SceneError."""
     if find:
-        if inputs[find].given is not None:
+        if find != DRIVE and inputs[find].given is not None:
             raise SceneError("find", find, f"conflicts with {find}, which is given; leave one of them out")
         return find
     M, has_pulley = inputs["M"].number, not (inputs["M"].number is None is inputs["I"].number)
     missing = [mass for mass in MASSES if inputs[mass].number is None]
     if len(missing) == 1:
-        if not has_pulley:
-            raise SceneError(missing[0], None, f"is missing; give it, or M, with which {name} finds it")
         return missing[0]
     slides = M == inf or (inputs["mu"].number is not None and M is not None)
     return "mu_k" if slides else "g" if has_pulley else "M"
@@ -86,6 +84,8 @@ def _direction(scene: Scene) -> int:
     finds, a = scene.motion.finds, scene.motion.a
     if finds in MASSES:
         return -1 if scene.m2 == 0 else 1  # only m1 can fall beside an end fixed to the pulley
+    if finds == DRIVE:
+        return 1
     if finds != "axle":
         return 0
     sign = (scene.m2 > scene.m1) - (scene.m2 < scene.m1)
@@ -103,6 +103,8 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
             return f"says nothing about {finds} on a pulley at rest; give {finds}"
         case "m1" | "m2" if 0 in (scene.m1, scene.m2) and not (decided.rim_mass or has_axle_friction):
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
+        case "drive" if M == inf:
+            return "is that of a pulley, which M = inf locks; leave M out, or give its mass"
         case "axle" if M == inf:
             return "says nothing about the axle of a locked pulley; leave M out"
         case "axle" if decided.heavier_side == 0:
@@ -143,7 +145,7 @@ def _impossible(scene: Scene) -> str:
             return "needs more kinetic friction than mu; check both"
     elif scene.m1 == scene.m2 == 0:
         return "implies that both masses are 0"
-    elif getattr(scene, finds) < 0:  # 0 is a mass
+    elif finds != DRIVE and getattr(scene, finds) < 0:  # 0 is a mass
         shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(getattr(scene, finds))))
         rule = f"implies {finds} = {shown} {INPUTS[finds].unit}, which cannot be negative; check all inputs"
         rises = f"; if the heavier mass still rises, axle friction is {shown[1:]} N"
@@ -162,7 +164,8 @@ def found_inputs(scene: Scene) -> dict[str, Any]:
     decided: Any = Decisions(scene)  # about the pulley, as a mass may be missing
     c, f, b = decided.rim_mass, decided.axle_friction, decided.axle_mass
     a = scene.motion.acceleration({"m2": 1, "m1": -1}.get(finds) or decided.heavier_side)
-    if finds != "g" and (a >= g or (finds == "axle" and -a >= g)):
+    is_braked = finds == "axle" or (finds == DRIVE and decided.light > 0)
+    if finds != "g" and (a >= g or (is_braked and -a >= g)):
         fall = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(abs(a))))
         gives = f"gives {fall} m/s², and " if scene.motion.a is None else ""
         raise Undetermined(f"{gives}must be slower than free fall, {as_typed(g)} m/s²")
@@ -174,7 +177,7 @@ def found_inputs(scene: Scene) -> dict[str, Any]:
     l, h = decided.light, decided.heavy
     if finds == "axle":
         return {finds: physics.axle_friction(l, h, c, a, g)}
-    if a <= 0:
+    if a <= 0 and finds != DRIVE:
         heavier, side = ("m2", "above") if m2 > m1 else ("m1", "below")
         raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass; {IF_IT_SLOWS_DOWN}")
     if finds == "M":

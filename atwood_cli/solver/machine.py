@@ -11,18 +11,17 @@ from ..numbers.rational import N
 from . import arc, physics, quantities
 from .decisions import Decisions, is_zero
 from .quantities import Undetermined
-from .scene import MASSES
+from .scene import DRIVE, MASSES
 
 if TYPE_CHECKING:
     from ..numbers.rational import Arithmetic
 
 
-def _found(name: str, otherwise: str) -> Any:
+def _found(name: str) -> Any:
     """Return the quantity that is an input, if the measured motion finds it."""
 
     def quantity(machine: Machine[N]) -> N:
-        if machine.decided.motion.finds != name:
-            raise Undetermined(otherwise)
+        machine.check_finds(name)
         return machine.ar.number(getattr(machine.scene, name))
 
     return property(quantity)
@@ -47,12 +46,19 @@ class Machine(Generic[N]):
 
     def __init__(self, decided: Decisions, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
         self.decided, self.scene, self.ar = decided, decided.scene, ar
-        self.l, self.h = ar.number(decided.light), ar.number(decided.heavy)
         # The axle's friction as a force at the rim (N), and as a mass (kg).
         self.f, self.b = map(ar.number, (decided.axle_friction, decided.axle_mass))
         self._arcs: dict[arc.Profile, list[arc.Arc[N]]] = {}
         for name, value in known.items():
             setattr(self, name, value)
+
+    @lazy
+    def l(self) -> N:
+        return self.ar.number(self.decided.light)
+
+    @lazy
+    def h(self) -> N:
+        return self.ar.number(self.decided.heavy)
 
     @lazy
     def g(self) -> N:
@@ -126,9 +132,11 @@ class Machine(Generic[N]):
 
     @lazy
     def magnitude(self) -> N:
-        """Magnitude of the acceleration (m/s²)."""
+        """Acceleration of the heavier mass (m/s²): below 0 only of masses that are braked or driven."""
         l, h, decided = self.l, self.h, self.decided
-        if decided.regime != "no-slip":
+        if decided.is_driven:
+            return self.ar.number(decided.measured_acceleration)
+        if decided.at_limit:
             drive, load = self.limiting_drive, physics.load(l, h, self.limiting_friction_mass)
         elif decided.heavier_side == 0 or decided.pulley_at_rest:
             return self.ar.number(0)
@@ -143,8 +151,9 @@ class Machine(Generic[N]):
         """The μ of T(θ) = T1 e^{±μθ}. Raises Undetermined if the string grips with friction to spare."""
         if self.decided.slide_measured:
             return self.mu_k
-        if self.decided.regime != "no-slip":
+        if self.decided.at_limit:
             return self.ar.number(self.decided.limiting_mu)
+        self._check_grips()
         if self.scene.mu is None or self.decided.tensions_equal or not self.decided.pulley_known:
             return self.mu_verge
         raise Undetermined(quantities.NOT_BOUNDED if self.decided.long_wrap else quantities.NOT_DEFINITE)
@@ -207,17 +216,18 @@ class Machine(Generic[N]):
     def difference(self) -> N:
         """Magnitude of T2 - T1 (N)."""
         decided = self.decided
-        if decided.regime != "no-slip":
+        if decided.at_limit:
             return physics.friction_at_limit(self.light_tension, self.limiting_k_minus_1)
         if decided.tensions_equal:
             return self.ar.number(0)
-        if decided.pulley_at_rest:
-            difference = physics.difference_of_moving_masses(self.l, self.h, self.ar.number(0), self.g)
+        if decided.pulley_at_rest or decided.is_driven:
+            a = self.magnitude if decided.is_driven else self.ar.number(0)
+            difference = physics.difference_of_moving_masses(self.l, self.h, a, self.g)
             return self.ar.taken_as_not_negative(difference)
         c = self._given(decided.rim_mass, quantities.NEEDS_M)
         return physics.difference_of_a_pulley(c, self.magnitude, self.f)
 
-    @property
+    @lazy
     def tension_difference(self) -> N:
         """T2 - T1 (N)."""
         return self.difference * self.decided.heavier_side
@@ -237,8 +247,9 @@ class Machine(Generic[N]):
 
     def _bounded(self) -> bool:
         """Decide whether the friction force has bounds above 0. Raises Undetermined if it has none."""
-        if self.decided.regime != "no-slip":
+        if self.decided.at_limit:
             raise Undetermined(quantities.DEFINITE)
+        self._check_grips()
         if not self._tensions_differ():
             return False
         _ = self.mu  # raises if it is not given
@@ -246,11 +257,26 @@ class Machine(Generic[N]):
             raise Undetermined(quantities.LONG_WRAP)
         return True
 
+    def check_finds(self, name: str) -> None:
+        """Raise Undetermined unless the measured motion finds an input, or the drive."""
+        motion = self.decided.motion
+        if motion.finds == name:
+            return
+        if motion.finds:
+            raise Undetermined(quantities.FINDS_ANOTHER.format(motion.finds))
+        raise Undetermined(quantities.NEEDS_MOTION.format(quantities.TO_FIND[name]))
+
+    def _check_grips(self) -> None:
+        """Raise Undetermined if the string would slip over a driven pulley."""
+        if self.decided.is_driven and self.decided.regime == "slip":
+            raise Undetermined(quantities.WOULD_SLIP)
+
     # The quantities
 
-    @property
+    @lazy
     def acceleration(self) -> N:
-        return self.magnitude if self.decided.heavier_side > 0 else self.magnitude * self.decided.heavier_side
+        side = self.decided.heavier_side
+        return self.magnitude if side >= 0 else self.magnitude * side
 
     @lazy
     def light_tension(self) -> N:
@@ -288,7 +314,7 @@ class Machine(Generic[N]):
 
     @lazy
     def tension_ratio(self) -> N:
-        if self.decided.regime != "no-slip":
+        if self.decided.at_limit:
             return self.limiting_k_minus_1 + 1
         return self.ratio_minus_1 + 1 if self._tensions_differ() else self.ar.number(1)
 
@@ -337,6 +363,7 @@ class Machine(Generic[N]):
     def rim_acceleration(self) -> N:
         if self.decided.regime != "slip":
             return self.acceleration
+        self._check_grips()
         if self.decided.rim_at_rest:
             return self.ar.number(0)
         c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
@@ -348,8 +375,7 @@ class Machine(Generic[N]):
 
     @lazy
     def mu_k(self) -> N:
-        if not self.decided.slide_measured:
-            raise Undetermined(quantities.NEEDS_A_OF_A_SLIDE)
+        self.check_finds("mu_k")
         return physics.verge_coefficient(self.ar.log1p(self.limiting_k_minus_1), self.phi)
 
     @lazy
@@ -385,7 +411,9 @@ class Machine(Generic[N]):
     @lazy
     def critical_pulley_mass(self) -> N:
         """Pulley mass (kg) above which the string slips; also if the pulley given is locked."""
-        friction_mass, decided = self.friction_mass, self.decided
+        friction_mass, decided, _ = self.friction_mass, self.decided, self.decided.heavier_side
+        if decided.is_driven:
+            raise Undetermined(quantities.ANY_DRIVEN)
         if not decided.can_slip:
             raise Undetermined(quantities.AXLE_HOLDS if decided.axle_holds else quantities.NO_CRITICAL_MASS)
         if decided.always_slips:
@@ -407,6 +435,9 @@ class Machine(Generic[N]):
     def critical_lighter_mass(self) -> N:
         """Lighter mass below which the string slips (kg); 0 if it slips under none."""
         k_minus_1, h = self.k_minus_1, self.h
+        if self.decided.is_driven:
+            least = physics.lighter_mass_at_rest(self.heavy_tension, self.capstan_ratio)
+            return physics.mass_of_tension(least, self.magnitude, self.g)
         if self.decided.pulley_at_rest_until_it_slips:
             return physics.lighter_mass_at_rest(h, self.capstan_ratio)
         c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
@@ -416,11 +447,15 @@ class Machine(Generic[N]):
 
     @lazy
     def least_heavier_mass(self) -> N:
-        return physics.least_heavier_mass(self.l, self.friction_mass)
+        if not self.decided.is_driven:
+            return physics.least_heavier_mass(self.l, self.friction_mass)
+        return physics.mass_of_tension(self.light_tension * self.capstan_ratio, -1 * self.magnitude, self.g)
 
     @lazy
     def least_pulley_mass(self) -> N:
         friction_mass = self.friction_mass
+        if self.decided.is_driven:
+            raise Undetermined(quantities.ANY_DRIVEN)
         if self.decided.slips_once_it_moves:
             raise Undetermined(quantities.AXLE_ENOUGH)
         beta = self._given(self.decided.beta, quantities.UNKNOWN_SHAPE)
@@ -438,23 +473,40 @@ class Machine(Generic[N]):
             raise Undetermined(quantities.NO_WRAP)
         return self.limiting_arc * 180 / self.ar.pi
 
-    pulley_mass = _found("M", quantities.NEEDS_A)
-    gravity = _found("g", quantities.NEEDS_A_BESIDE_M)
-    m1, m2 = (_found(mass, quantities.NEEDS_A_AND_M.format(mass)) for mass in MASSES)
-    axle = _found("axle", quantities.NEEDS_FIND_AXLE)
+    pulley_mass, gravity, m1, m2, axle = map(_found, ("M", "g", *MASSES, "axle"))
 
     @property
     def moment_of_inertia(self) -> N:
-        _ = self.pulley_mass  # raises unless it follows from the motion
-        R = self._given(self.scene.R, quantities.NEEDS_R)
-        return physics.moment_of_inertia(self._given(self.decided.rim_mass, quantities.NEEDS_M), R)
+        if self.scene.M is self.scene.I is None:
+            raise Undetermined(quantities.NEEDS_M)
+        c = self._given(self.decided.rim_mass, quantities.LOCKED_I)
+        return physics.moment_of_inertia(c, self._given(self.scene.R, quantities.NEEDS_R))
 
     @property
     def axle_torque(self) -> N:
         torque: N = self.axle * self._given(self.scene.R, quantities.NEEDS_R)
         return torque
 
+    @lazy
+    def drive_force(self) -> N:
+        self.check_finds(DRIVE)
+        self._check_grips()
+        if self.decided.has_axle_friction and not self.decided.measured_acceleration:
+            raise Undetermined(quantities.EITHER_WAY)
+        return self.drive_force_against(1 if self.decided.motion.acceleration(1) > 0 else -1)
+
+    def drive_force_against(self, direction: int) -> N:
+        """Return the drive (N) of a pulley that turns with m2 downwards (1) or upwards (-1); (3) with it."""
+        c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
+        turns = physics.difference_of_a_pulley(c, self.acceleration, self.f * direction)
+        return turns - self.tension_difference
+
     @property
+    def drive_torque(self) -> N:
+        torque: N = self.drive_force * self._given(self.scene.R, quantities.NEEDS_R)
+        return torque
+
+    @lazy
     def drop(self) -> N:
         a, drop, time, speed = self._fall()
         if drop is not None:
@@ -474,7 +526,7 @@ class Machine(Generic[N]):
         assert speed is not None
         return physics.time_or_acceleration(speed, a)
 
-    @property
+    @lazy
     def final_speed(self) -> N:
         a, drop, time, speed = self._fall()
         if speed is not None:
@@ -484,13 +536,37 @@ class Machine(Generic[N]):
         assert time is not None
         return physics.speed_after(a, time)
 
+    @property
+    def final_angular_speed(self) -> N:
+        return self._of_rim(self.final_speed) / self._given(self.scene.R, quantities.NEEDS_R)
+
+    @property
+    def kinetic_energy(self) -> N:
+        a, rim_distance = self._fall()[0], self._of_rim(self.drop)
+        energy = physics.kinetic_energy(self.l + self.h, a, self.drop)
+        if self.decided.regime == "slip" and self.decided.rim_at_rest:
+            return energy
+        if self.decided.regime == "verge":
+            c = self.critical_pulley_mass * self._given(self.decided.beta, quantities.NEEDS_M)
+        else:
+            c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
+        return energy + physics.kinetic_energy(c, self._of_rim(a), rim_distance)
+
+    def _of_rim(self, motion: N) -> N:
+        """Return what the rim has of an acceleration, a speed or a distance: less if the string slips."""
+        if self.decided.regime != "slip":
+            return motion
+        return motion * (self.rim_acceleration * self.decided.heavier_side / self.magnitude)
+
     def _fall(self) -> tuple[N, N | None, N | None, N | None]:
         """Return the acceleration (m/s²), and height, time and speed of a fall; None if one is not given."""
         if not self.decided.motion.fall:
             raise Undetermined(quantities.NEEDS_FALL)
         if self.decided.slows_down:
             raise Undetermined(quantities.SLOWS_DOWN)
-        if self.ar.is_zero(self.magnitude):
+        lighter_falls = self.decided.is_driven and self.decided.measured_acceleration < 0
+        a = self.magnitude * -1 if lighter_falls else self.magnitude
+        if self.ar.is_zero(a):
             raise Undetermined(quantities.AT_REST)
         drop, time, speed = (None if x is None else self.ar.number(x) for x in self.decided.fall)
-        return self.magnitude, drop, time, speed
+        return a, drop, time, speed

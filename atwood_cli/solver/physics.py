@@ -212,6 +212,15 @@ def final_speed(drop: N, a: N, sqrt: Function[N]) -> N:
     return sqrt(2 * drop * a)
 
 
+def kinetic_energy(mass: N, a: N, distance: N) -> N:
+    """Return the kinetic energy (J) of a mass that accelerates from rest with a over a ``distance`` (m).
+
+    >>> kinetic_energy(4, 2, 9)
+    72
+    """
+    return mass * a * distance
+
+
 def light_tension(l: N, a: N, g: N) -> N:
     """Return the tension on the lighter mass (N), from (1): its weight and what accelerates it.
 
@@ -219,6 +228,15 @@ def light_tension(l: N, a: N, g: N) -> N:
     11
     """
     return l * (g + a)
+
+
+def mass_of_tension(tension: N, a: N, g: N) -> N:
+    """Return the mass (kg) that a tension (N) lifts with the acceleration a; `light_tension` solved for it.
+
+    >>> mass_of_tension(22, 2, 9), mass_of_tension(21, -2, 9)
+    (2.0, 3.0)
+    """
+    return tension / (g + a)
 
 
 def difference_of_a_pulley(c: N, a: N, f: N) -> N:

@@ -49,6 +49,7 @@ QUANTITIES = {
     "acceleration": About("motion", "a", "m/s²", "(4)", "acceleration, positive when m2 descends", "(1), (26)"),
     "tension_1": About("motion", "T₁", "N", "(4)", "tension of the string at m1", "(1), (26)"),
     "tension_2": About("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)"),
+    "tension_difference": About("motion", "T₂ - T₁", "N", "(3)", "difference of the tensions", "(26)"),
     "mu_verge": About("friction", "μ*", "", "(27)", "friction coefficient below which the string slips", axis="verge coefficient"),
     "safety_factor": About("friction", "μ/μ*", "", "", "ratio of friction coefficients, mu over mu_verge; below 1 it slips"),
     "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser", "(26)"),
@@ -70,48 +71,59 @@ QUANTITIES = {
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:
     "pulley_mass": About("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration"),
-    "moment_of_inertia": About("measured", "I", "kg m²", "", "moment of inertia that gives the measured acceleration"),
+    "moment_of_inertia": About("pulley", "I", "kg m²", "", "moment of inertia of the pulley"),
     "gravity": About("measured", "g", "m/s²", "(4)", "gravity that gives the measured acceleration"),
     "m1": About("measured", "m₁", "kg", "(1), (3)", "mass m1 that gives the measured acceleration"),
     "m2": About("measured", "m₂", "kg", "(1), (3)", "mass m2 that gives the measured acceleration"),
     "mu_k": About("measured", "μ kin", "", "(26)", "mu_k that gives the measured acceleration", None, "μ_k"),
     "axle": About("measured", "f", "N", "", "axle friction that gives the measured acceleration", in_equations="f_axle"),
     "axle_torque": About("measured", "τ axle", "N m", "", "the same as a torque", in_equations="τ_axle"),
+    "drive_force": About("measured", "F drive", "N", "(3)", "force of a motor or brake at the rim, positive if it helps m2 down", None, "F_drive"),
+    "drive_torque": About("measured", "τ drive", "N m", "", "the same as a torque", in_equations="τ_drive"),
     "drop": About("measured", "s", "m", "", "height of the fall from rest"),
     "fall_time": About("measured", "t", "s", "", "time of that fall"),
     "final_speed": About("measured", "v", "m/s", "", "speed at its end"),
+    "final_angular_speed": About("measured", "ω", "rad/s", "", "angular speed of the pulley at its end"),
+    "kinetic_energy": About("measured", "E kin", "J", "", "kinetic energy of masses and pulley at its end", in_equations="E_kin"),
 }
 # fmt: on
 
 AXLE_ENTERS = {
-    *("acceleration", "tension_1", "tension_2", "tension_ratio", "rim_acceleration"),
+    *("acceleration", "tension_1", "tension_2", "tension_difference", "tension_ratio", "rim_acceleration"),
     *("critical_pulley_mass", "critical_heavier_mass", "least_pulley_mass"),
     *("pulley_mass", "gravity", "m1", "m2"),
 }
 """The quantities whose equation has an additional term if the axle has friction."""
 
 
-def cited(name: str, slips: bool, has_axle_friction: bool) -> str:
+def cited(name: str, slips: bool, has_axle_friction: bool, is_driven: bool) -> str:
     """Return the paper's equation for a quantity in a regime, and say if axle friction adds a term."""
     about = QUANTITIES[name]
+    if is_driven and about.group == "motion":
+        return "(1)"
     if slips and about.equation_in_slip is not None:
         return about.equation_in_slip
     return f"{about.equation} with axle" if has_axle_friction and name in AXLE_ENTERS else about.equation
 
 
 FROM_MOTION: dict[str | None, tuple[str, ...]] = {
-    "M": ("pulley_mass", "moment_of_inertia"),
+    "M": ("pulley_mass",),
     "g": ("gravity",),
     "m1": ("m1",),
     "m2": ("m2",),
     "mu_k": ("mu_k",),
     "axle": ("axle", "axle_torque"),
-    "fall": ("drop", "fall_time", "final_speed"),
+    "drive": ("drive_force", "drive_torque"),
+    "fall": ("drop", "fall_time", "final_speed", "final_angular_speed", "kinetic_energy"),
 }
 """The quantities that only a measurement gives: by the input that it finds, or of a fall."""
 MEASURED_NAMES = tuple(chain.from_iterable(FROM_MOTION.values()))
 NAMES = ("regime", *(name for name in QUANTITIES if name not in MEASURED_NAMES))
 """The quantities that every scene has."""
+LIMITS_OF_ONE_MASS = ("critical_lighter_mass", "critical_heavier_mass")
+"""The least and the greatest mass that the string holds beside a given one."""
+TABLE_NAMES = (*NAMES, *FROM_MOTION["fall"])
+"""The quantities of many scenes: those of every scene, and of a fall."""
 STANDARD = (
     "regime",
     "acceleration",
@@ -125,6 +137,7 @@ STANDARD = (
 
 # Why a scene does not determine a quantity, and what to give.
 
+NEEDS_MASSES = "`give` both masses, `m1` and `m2`"
 NEEDS_MU = "`give` `mu`, the friction coefficient"
 NEEDS_M = "`give` `M`, the pulley's mass"
 NEEDS_R = "`give` `R`, the pulley's radius"
@@ -142,14 +155,21 @@ AXLE_ENOUGH = "no value, as with axle friction the string slips on every pulley,
 NO_NEED = "no value, as no friction is needed"
 NO_WRAP = "no value, as without friction no wrap holds"
 LOCKED_AXLE = "no value, as the weight of a pulley with `M` = `inf` is not known; atwood contact has the force of the string"
+LOCKED_I = "no value, as the inertia of a pulley with `M` = `inf` is not known"
 ONE_SIDED = "not computed unless both ends pull downwards (half a turn of wrap, plus whole turns); atwood contact has the force of the string"
-NEEDS_A = "`give` `a`, a measured acceleration, without `M`, `I` and `mu`; see also `critical_pulley_mass`"
-NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, with a finite `M`, and without `g` and `mu`"
-NEEDS_A_AND_M = "`give` `a`, a measured acceleration, with a finite `M`, and without `{}` and `mu`"
-NEEDS_A_OF_A_SLIDE = (
-    "`give` `a`, a measured acceleration, with `M` = `inf`, or with `M` and a `mu` that is too small"
-)
-NEEDS_FIND_AXLE = "`give` `a`, a measured acceleration, and find `axle`"
+NEEDS_MOTION = "`give` `a`, or two of `drop`, `time` and `speed`, {}"
+FINDS_ANOTHER = "no value, as the motion finds `{}`; it finds one unknown at a time"
+TO_FIND: dict[str, str] = {
+    **{name: f"without `{name}` and `mu`" for name in ("g", "m1", "m2")},
+    "M": "without `M`, `I` and `mu`; see also `critical_pulley_mass`",
+    "mu_k": "with `M` = `inf`, or with `M` and a `mu` that is too small",
+    "axle": "without `mu`, and find `axle`",
+    "drive": "and find the drive",
+}
+"""What a measured motion needs besides, by what it is to find."""
+WOULD_SLIP = "no value, as the string would slip at this motion"
+ANY_DRIVEN = "no value, as the mass of a driven pulley does not decide whether the string slips"
+EITHER_WAY = "not unique, as axle friction opposes the motion, which `a` = 0 does not tell"
 NEEDS_FALL = (
     "`give` `drop`, the height that the heavier mass falls from rest, or `time` or `speed` of that fall"
 )

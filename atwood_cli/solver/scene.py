@@ -9,6 +9,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn, cast
 
 from ..numbers.digits import as_typed, to_double
+from ..numbers.rational import EXACT
 from ..numbers.text import in_quotes, shortened
 from . import physics
 
@@ -53,7 +54,7 @@ class Angle(NamedTuple):
 class Terms(NamedTuple):
     """Terms in which an input may be given besides its own, and the symbol, dimension and SI unit there.
 
-    The input in its own terms is the number given times another input, ``by``, or divided by it.
+    The input in its own terms is the number given, or its square, times an input ``by``, or divided by it.
     """
 
     words: str
@@ -62,20 +63,25 @@ class Terms(NamedTuple):
     unit: str
     by: str
     divided: bool = False
+    squared: bool = False
 
     def own(self, number: Any, by: Any) -> Any:
         """Return the input in its own terms, of a number in these."""
+        number = number * number if self.squared else number
         return number / by if self.divided else number * by
 
     def number(self, own: Any, by: Any) -> Any:
         """Return the number in these terms, of the input in its own."""
-        return own * by if self.divided else own / by
+        number = own * by if self.divided else own / by
+        return EXACT.sqrt(number) if self.squared else number
 
 
 WEIGHT = Terms("a weight", "W", "force", "N", "g", divided=True)
 TORQUE = Terms("a torque", "τ_axle", "torque", "Nm", "R", divided=True)
 ANGULAR_ACCELERATION = Terms("an angular acceleration", "α_given", "angular acceleration", "rad/s²", "R")
 ANGULAR_SPEED = Terms("an angular speed", "ω_given", "angular speed", "rad/s", "R")
+GYRATION = Terms("a radius of gyration", "k_I", "length", "m", "M", squared=True)
+NEEDED = {"R": "the radius R", "M": "the pulley's mass M, finite,"}
 MULTIPLE_OF_G = Terms("a multiple of g", "n_g", "gravity", "g", "g")
 
 
@@ -101,6 +107,10 @@ class Unit(NamedTuple):
     def in_words(self) -> str:
         return self.symbol.replace("2", "²")
 
+
+Units = Mapping[str, Unit]
+IN_SI: Units = {}
+"""The units of quantities, by their names, that are not those of the SI: of none."""
 
 if TYPE_CHECKING:
     from numpy import floating, integer
@@ -131,8 +141,9 @@ BODIES = {
 giants at the equator where the pressure is 1 bar. Earth has standard gravity."""
 
 MASSES = ("m1", "m2")
-FINDABLE = (*MASSES, "M", "g", "mu_k", "axle")
-"""The inputs that a measured motion may give."""
+DRIVE = "drive"
+FINDABLE = (*MASSES, "M", "g", "mu_k", "axle", DRIVE)
+"""The inputs that a measured motion may give, and the drive of a motor or a brake, which is no input."""
 FALL = ("drop", "time", "speed")
 """What is measured of a fall from rest; the acceleration follows from two."""
 DEFAULTS = {"g": STANDARD_GRAVITY, "wrap": "180"}
@@ -206,7 +217,8 @@ INPUTS = {
     "g": Parameter("gravity", "g", "gravity", "m/s²", dimension="acceleration", names=BODIES),
     "inertia": Parameter("inertia factor β = I/(M R²)", "β", "inertia factor", names=INERTIA_FACTORS),
     "I": Parameter(
-        "moment of inertia of the pulley", "I", "moment of inertia", "kg m²", dimension="moment of inertia"
+        "moment of inertia of the pulley", "I", "moment of inertia", "kg m²", dimension="moment of inertia",
+        terms=(GYRATION,),
     ),
     "R": Parameter("radius of the pulley", "R", "radius", "m", dimension="length"),
     "wrap": Parameter(
@@ -234,6 +246,8 @@ MEASURED = {
 }
 """Measurements of the motion, in addition to a scene or instead of one of its inputs; see `inverse`."""
 # fmt: on
+COLUMNS = INPUTS | {name: MEASURED[name] for name in FALL}
+"""The inputs of many scenes: those of a scene, and one of a fall from rest."""
 
 
 def parameter_of(name: str) -> Parameter:
@@ -267,9 +281,9 @@ NOT_GIVEN = Input()
 class Motion(NamedTuple):
     """Measurements of the motion in SI units, exact; one that is not given is None.
 
-    ``finds`` is the input, such as "M" or "g", that was not given and follows from them. ``direction`` is 1
-    if m2 descends and -1 if m1 does, where the masses do not tell: one of them is found from a fall (m2 rises
-    if height or speed is below 0), or the axle's friction is.
+    ``finds`` is the input, such as "M" or "g", that was not given and follows from them, or the drive.
+    ``direction`` is 1 if m2 descends and -1 if m1 does, where the masses do not tell: one of them is found
+    from a fall (m2 rises if height or speed is below 0), or the axle's friction or a drive is.
     """
 
     a: Fraction | None = None
@@ -295,7 +309,7 @@ class Motion(NamedTuple):
             a = physics.height_or_acceleration(speed, drop)
         else:
             a = physics.acceleration_of_fall(drop, time)
-        return sign * self.direction * a if self.finds in MASSES else a
+        return sign * self.direction * a if self.finds in (*MASSES, DRIVE) else a
 
 
 class Scene(NamedTuple):
@@ -320,8 +334,10 @@ class Scene(NamedTuple):
     terms: tuple[tuple[str, Terms], ...] = ()
 
     @classmethod
-    def of(cls, inputs: Mapping[str, Input], finds: str | None = None) -> Scene:
+    def of(cls, inputs: Mapping[str, Input], finds: str | None = None, may_lack: bool = False) -> Scene:
         """Make a scene of inputs and measurements that were read one by one; a motion may find a mass.
+
+        It ``may_lack`` masses beside mu, as some limits hold without them.
 
         Raises SceneError if they contradict another.
         """
@@ -332,16 +348,19 @@ class Scene(NamedTuple):
         numbers = {name: read.number for name, read in inputs.items()}
         terms = {name: read.unit.terms for name, read in inputs.items() if read.unit.terms}
         for name, kind in terms.items():
-            if numbers[kind.by] is None:  # g has a default
-                refuse(name, f"is {kind.words}, which needs the radius R as well")
+            if numbers[kind.by] in (None, inf):  # g has a default
+                refuse(name, f"is {kind.words}, which needs {NEEDED[kind.by]} as well")
         values = in_own_terms(numbers, terms)
         values["wrap"] = Angle(values["wrap"], "rad" if inputs["wrap"].unit.symbol == "rad" else "°")
         motion = Motion(**{x: values.pop(x) for x in MEASURED if x in values}, finds=finds)
         m1, m2, M, mu, mu_k, inertia, I = (values[x] for x in ("m1", "m2", "M", "mu", "mu_k", "inertia", "I"))
         for mass in MASSES:
-            if values[mass] is None and mass != finds:
+            if values[mass] is None and mass != finds and (not may_lack or mu is None):
                 fixed = "" if M is I is None else f"; {mass} = 0 is an end fixed to the pulley"
                 refuse(mass, f"{MISSING_MASS}{fixed}")
+        if finds is None and len(motion.fall) > 1:
+            rule = "give the acceleration, which only solve takes; leave one of them out"
+            refuse(motion.fall[1], f"and {motion.fall[0]} {rule}", "two of drop, time and speed")
         if I is not None and inertia is not None:
             refuse("I", "and inertia both describe the pulley; give one of them", "I and inertia")
         if I is None and inertia is None:
@@ -364,6 +383,11 @@ class Scene(NamedTuple):
             rule = f"contradicts M = {shortened(str(inputs['M'].given))}; leave one of them out"
             refuse("I", rule, "I with M = 0 or inf")
         return cls(**values, motion=motion, terms=(*terms.items(),))
+
+    @property
+    def lacking(self) -> list[str]:
+        """The masses that are neither given nor found."""
+        return [mass for mass in MASSES if getattr(self, mass) is None]
 
     def own(self, x: str) -> Any:
         """Return an input, or what was measured, in its own terms."""

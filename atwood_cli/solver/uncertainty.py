@@ -21,7 +21,7 @@ from ..numbers.interval import ZERO, decimal_context
 from .answers import TOO_SMALL, Answer, Answers
 from .inverse import found_inputs
 from .quantities import Undetermined
-from .scene import Input, Scene, parameter_of
+from .scene import parameter_of
 
 DIGITS, RIGHT_DIGITS = 48, 15
 NEGLIGIBLE = Decimal("1e-30")
@@ -61,9 +61,9 @@ class Spread(NamedTuple):
 class UncertainAnswers(Answers):
     """The quantities of a scene with standard uncertainties: of inputs, ``uncertain``, and of quantities."""
 
-    def __init__(self, scene: Scene, digits: int | None, inputs: Mapping[str, Input]) -> None:
-        super().__init__(scene, digits, inputs)
-        self.uncertain = {x: read.uncertainty for x, read in inputs.items() if read.uncertainty}
+    def __init__(self, *given: Any) -> None:
+        super().__init__(*given)
+        self.uncertain = {x: read.uncertainty for x, read in self.inputs.items() if read.uncertainty}
         self._ends: dict[int, dict[str, tuple[End, End]]] = {}
         self._spreads: dict[str, Spread] = {}
 
@@ -93,7 +93,7 @@ class UncertainAnswers(Answers):
             moved = scene._replace(**found_inputs(scene))
             if 0 in (moved.m1, moved.m2) and (moved.mu is not None or moved.m1 == moved.m2):
                 return End(number, None, NO_SCENE)
-            answers = Answers(moved, DIGITS)
+            answers = Answers(moved, DIGITS, units=self.units)
             _ = answers.decided.axle_mass, answers.decided.rim_mass
         except (Undetermined, ZeroDivisionError):
             return End(number, None, NOTHING_FITS)

@@ -63,7 +63,7 @@ def changes(
     scene: Scene,
     along: Range,
     digits: int | None = None,
-    known: Mapping[Fraction, str] = {},
+    known: Mapping[Fraction, Any] = {},
     what: Callable[[Decisions], Any] = attrgetter("regime"),
 ) -> Iterator[Change]:
     """Yield the changes of the regime, or of another decision, along a range, from its least value on.

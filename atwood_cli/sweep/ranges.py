@@ -29,7 +29,7 @@ from ..numbers.text import in_quotes
 from ..reading.inputs import read_exactly, read_whole
 from ..reading.units import MAX_DIGITS
 from ..solver.answers import Answers
-from ..solver.scene import INPUTS, Input, Scene, SceneError, Unit, with_unit
+from ..solver.scene import COLUMNS, IN_SI, Input, Scene, SceneError, Unit, Units, parameter_of, with_unit
 
 MAX_POINTS, MAX_RANGES = 1_000_000, 2
 FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
@@ -124,11 +124,15 @@ class Range(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """Ranges, the first of which varies slowest, the scene at their first finite values, and other inputs."""
+    """Ranges, the first of which varies slowest, the scene at their first finite values, and other inputs.
+
+    ``units`` are those of results, by name, that are asked for in another than their own.
+    """
 
     ranges: list[Range]
     scene: Scene
     fixed: Mapping[str, Input]
+    units: Units
 
     @property
     def total(self) -> int:
@@ -169,18 +173,18 @@ class Row(NamedTuple):
     """The regime, the values asked for, why some are missing, and what fails that is expected, at a point."""
 
     at: dict[str, Point]
-    regime: str
+    regime: str | None
     mu_assumed: bool
     values: dict[str, object]
     reasons: dict[str, str]
     failures: dict[str, str]
 
 
-def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sweep:
+def read_sweep(given: Mapping[str, str | None], digits: int | None = None, units: Units = IN_SI) -> Sweep:
     """Read a sweep: values, with one or two ranges or lists, for so many digits. Raises SceneError."""
-    typed = {name: words for name in INPUTS if re.search("[:,]", words := given.get(name) or "")}
+    typed = {name: words for name in COLUMNS if re.search("[:,]", words := given.get(name) or "")}
     # An input that is wrong at every point is an error before there are points.
-    fixed = {name: read_exactly(name, given.get(name)) for name in INPUTS if name not in typed}
+    fixed = {name: read_exactly(name, given.get(name)) for name in COLUMNS if name not in typed}
     if not typed:
         rule = f"or another option of the scene must carry a list, as 0,1,10, or a range: {FORM}"
         raise SceneError("M", None, rule)
@@ -201,7 +205,8 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
             f"cannot be swept beside {weights[0]}, a weight, whose mass would change; give {weights[0]} in kg"
         )
         raise SceneError("g", typed["g"], rule)
-    sweep = Sweep(ranges, scene, fixed)
+    fixed |= {x.name: Input(unit=x.unit) for x in ranges if x.unit.terms or x.unit.size != 1}
+    sweep = Sweep(ranges, scene, fixed, units)
     if sweep.total > MAX_POINTS:
         rule = f"makes {sweep.total} points with {names[0]}; at most {MAX_POINTS} are taken"
         raise SceneError(names[1], typed[names[1]], rule)
@@ -254,9 +259,11 @@ def _read_points(name: str, typed: str, words: Sequence[str]) -> Range:
     """
     read = [read_exactly(name, word) for word in words]
     numbers = [x.number for x in read]
-    names = [word.lower() if word.lower() in INPUTS[name].names else "" for word in words]
+    names = [word.lower() if word.lower() in parameter_of(name).names else "" for word in words]
     # A name is typed neither with a unit nor without, and 0 is 0 in any.
     typed_units = {x.unit for x, word in zip(read, names, strict=True) if not (word or x.number in (0, inf))}
+    if any(unit.symbol == "rpm" for unit in typed_units):
+        raise SceneError(name, typed, "is in rpm, which are no decimals in rad/s; sweep it in rad/s")
     # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
     if len({(_si_unit(name, unit), not unit.symbol) for unit in typed_units}) > 1:
         raise SceneError(name, typed, "mixes units; write the same unit at each number")
@@ -273,7 +280,7 @@ def _si_unit(name: str, unit: Unit) -> str:
     """Return the unit of the SI, or ° or rad, for numbers of an input in a unit."""
     if unit.terms:
         return unit.terms.unit
-    return "rad" if unit.symbol == "rad" else INPUTS[name].unit
+    return "rad" if unit.symbol == "rad" else parameter_of(name).unit
 
 
 def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: int | None) -> int:
@@ -313,7 +320,7 @@ def scene_at(fixed: Mapping[str, Input], place: Sequence[tuple[Range, Fraction |
     """Return the scene of fixed inputs and those at a point, read as by `solve`. Raises SceneError."""
     here = {range_.name: read_exactly(range_.name, range_.text(value)) for range_, value in place}
     try:
-        return Scene.of({**fixed, **here})
+        return Scene.of({**fixed, **here}, may_lack=True)
     except SceneError as error:
         if error.parameter in here or error.value is None:
             raise
@@ -328,15 +335,15 @@ def solve_rows(
 
     The critical pulley mass is the same on all pulleys, unless their shapes differ, as of a given I.
     """
-    of_any_pulley = Answers(sweep.scene, digits)
+    of_any_pulley = Answers(sweep.scene, digits, units=sweep.units)
     is_same = [range_.name for range_ in sweep.ranges] == ["M"] and sweep.scene.I is None
     for scene, place in sweep.scenes(sweep.ranges):
-        answers = Answers(scene, digits)
+        answers = Answers(scene, digits, units=sweep.units)
         by_name = {
             name: (of_any_pulley if is_same and name == "critical_pulley_mass" else answers).answer(name)
             for name in names
         }
         reasons = {name: answer.reason for name, answer in by_name.items() if answer.reason}
         decided, values = answers.decided, {name: answer.value for name, answer in by_name.items()}
-        failures = failures_of(answers, conditions)
-        yield Row(place, decided.regime, decided.mu_assumed, values, reasons, failures)
+        failures = failures_of(answers.in_units(IN_SI), conditions)
+        yield Row(place, answers["regime"], decided.mu_assumed, values, reasons, failures)

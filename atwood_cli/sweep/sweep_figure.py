@@ -1,6 +1,7 @@
 """The curves of a sweep, and their picture."""
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 from itertools import chain
 from math import isnan, nan
 from operator import attrgetter
@@ -55,46 +56,47 @@ def _drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
     along, (low, high) = sweep.along, sweep.along.ends
     if not along.is_list and (high > LARGEST_DRAWN or (along.log and low < 1 / LARGEST_DRAWN)):
         raise SceneError("figure", None, UNDRAWABLE.format(along.name))
-    units = [QUANTITIES[name].unit for name in drawn]
+    units = [*map(Answers(sweep.scene, units=sweep.units).unit_of, drawn)]
     if (count := sweep.total // len(along.points) * max(map(units.count, units))) > MAX_CURVES:
         rule = f"would draw {count} curves on one pair of axes; at most {MAX_CURVES} can be distinguished"
         raise SceneError("figure", None, f"{rule}; name fewer quantities, or give one range fewer points")
     return drawn
 
 
-def _solve(along: Range, scene: Scene, digits: int | None) -> tuple[list[Change], dict[float, Answers]]:
+def _solve(sweep: Sweep, scene: Scene, digits: int | None) -> tuple[list[Change], dict[float, Answers]]:
     """Return the changes along a range, and the answers at its values; those of a list are by place."""
+    along, answers = sweep.along, partial(Answers, units=sweep.units)
     if along.is_list:
         scenes = (along.at(point.value, scene) for point in along.points)
-        return [], {float(place): Answers(at_value) for place, at_value in enumerate(scenes)}
+        return [], {float(place): answers(at_value) for place, at_value in enumerate(scenes)}
     corners = attrgetter("regime", "heavier_side", "axle_holds")  # where one of these changes
-    in_order = list(changes(scene, along, digits, what=corners))
+    in_order = [] if scene.lacking else list(changes(scene, along, digits, what=corners))
     values = [*steps(*along.ends, CURVE_STEPS, along.log)]
     values += [x for change in in_order for x in (change.holds_at, change.differs_at)]
-    return in_order, {float(x): Answers(along.at(x, scene)) for x in sorted(values)}
+    return in_order, {float(x): answers(along.at(x, scene)) for x in sorted(values)}
 
 
-def panels_of(sweep: Sweep, names: Sequence[str], digits: int | None = None) -> list[list[Curve]]:
-    """Return curves, those of one unit together: each along one range, for a point of the other range.
+def panels_of(sweep: Sweep, names: Sequence[str], digits: int | None = None) -> dict[str, list[Curve]]:
+    """Return curves by their unit: each along one range, for a point of the other range.
 
     Raises SceneError if numbers are too large to draw, ArithmeticError if there are none.
     """
     along, others = sweep.along, sweep.scenes(sweep.others)
-    scenes = [(typeset(sweep.in_words(place)), *_solve(along, scene, digits)) for scene, place in others]
-    panels: dict[str, list[Curve]] = {}
+    scenes = [(typeset(sweep.in_words(place)), *_solve(sweep, scene, digits)) for scene, place in others]
+    panels, unit_of = dict[str, list[Curve]](), Answers(sweep.scene, units=sweep.units).unit_of
     for name in names:
         curves = [_curve(along, name, *scene) for scene in scenes]
         numbers = [abs(y) for y in _numbers(curves)]
         if max(numbers, default=0) > LARGEST_DRAWN:
             raise SceneError("figure", None, UNDRAWABLE.format(name))
         if numbers:
-            panels.setdefault(QUANTITIES[name].unit, []).extend(curves)
+            panels.setdefault(unit_of(name), []).extend(curves)
     if not panels:
         answers = [answer for _, _, solved in scenes for answer in solved.values()]
         reasons = dict.fromkeys(answer.answer(name).reason for name in names for answer in answers)
         why = unmarked("; ".join(reasons))
         raise ArithmeticError(f"{', '.join(names)} exists at no point, so there is nothing to draw: {why}")
-    return [*panels.values()]
+    return panels
 
 
 def _numbers(curves: Sequence[Curve]) -> list[float]:
@@ -137,7 +139,8 @@ def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: 
     Raises SceneError, OSError, and ArithmeticError if there is nothing to draw.
     """
     names = _drawable(sweep, names)
-    along, panels = sweep.along, panels_of(sweep, names, digits)
+    along, by_unit = sweep.along, panels_of(sweep, names, digits)
+    panels = [*by_unit.values()]
     inputs = [words for name, words in sweep.inputs.items() if name != along.name]
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
     title = f"{axis_title(chain(*quantities))} against {axis_title([along.label])}"
@@ -145,8 +148,8 @@ def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: 
     with saved(picture, above, panels=len(panels)) as figure:
         all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
         _set_places(all_axes[-1], along)
-        for axes, curves, drawn in zip(all_axes, panels, quantities, strict=True):
-            words = axis_title(drawn, QUANTITIES[curves[0].quantity].unit)
+        for axes, (unit, curves), drawn in zip(all_axes, by_unit.items(), quantities, strict=True):
+            words = axis_title(drawn, unit)
             axes.set_ylabel("\n".join(wrapped(words, TITLE_CHARACTERS)))
             # Curves are drawn, and stand in the legend, in the order of their right ends.
             for place, curve in sorted(

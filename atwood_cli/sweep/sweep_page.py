@@ -8,14 +8,14 @@ from itertools import groupby
 
 from ..explain.conditions import Condition
 from ..explain.given import VERSION, scene_record
-from ..explain.messages import on_units, unmarked
+from ..explain.messages import on_units, typed_units, unmarked
 from ..explain.tally import EXPECTED, Tally
 from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
 from ..output.page import Page, progress
 from ..output.text import aligned, cell
 from ..solver.answers import Answers
-from ..solver.quantities import QUANTITIES, STANDARD
-from ..solver.scene import with_unit
+from ..solver.quantities import FROM_MOTION, LIMITS_OF_ONE_MASS, STANDARD
+from ..solver.scene import Scene, with_unit
 from .changes import changes, say_regimes
 from .ranges import LOCKED, Row, Sweep, solve_rows
 
@@ -29,9 +29,9 @@ class SweepPage:
         self.sweep, self.digits, self.conditions = sweep, digits, conditions
         self.tally = Tally(names, conditions)
         """The counts of the rows that are solved and, as JSON or CSV, written."""
-        self.names = names or STANDARD
+        self.names = names or usual_quantities(sweep.scene)
         # If a sentence says the regimes, they have a column only if it is asked for.
-        self.columns = self.names if names or len(sweep.ranges) > 1 else STANDARD[1:]
+        self.columns = [name for name in self.names if names or len(sweep.ranges) > 1 or name != "regime"]
         self.assumed: list[str] = []
         greatest = sweep.scene
         for range_ in sweep.ranges:
@@ -80,18 +80,23 @@ class SweepPage:
 
         With ``table``, a table has a row for each point. Columns without a value are left out.
         """
-        sweep, names = self.sweep, list(self.columns)
-        if sweep.scene.M is None and sweep.scene.mu is not None and PULLEY not in names:
+        # Limits are in the unit of the mass or the wrap, if that is unusual.
+        units = typed_units(Answers(self.sweep.scene, None, self.sweep.fixed)) | dict(self.sweep.units)
+        self.sweep = sweep = self.sweep._replace(units=units)
+        names, lacks = list(self.columns), bool(sweep.scene.lacking)
+        if sweep.scene.M is None and sweep.scene.mu is not None and PULLEY not in names and not lacks:
             names.append(PULLEY)
         rows = list(self._rows(names, self.digits or SHOWN_DIGITS))
+        unit_of = Answers(sweep.scene, units=units).unit_of
         cells = {name: [cell(row.values[name]) for row in rows] for name in names}
         shown = {name: column for name, column in cells.items() if any(column)}
         same = {name: column[0] for name, column in shown.items() if len(set(column)) == 1}
-        above = [", ".join(sweep.inputs.values()), *self.assumed, *_regimes(sweep, rows, self.digits)]
+        above = [", ".join(sweep.inputs.values()), *self.assumed]
+        above += [] if lacks else _regimes(sweep, rows, self.digits)
         if PULLEY not in same and any(row.regime == "verge" for row in rows):
             above.append(PULLEYS)
         numbers = [name for name in same if name != "regime"]
-        if shared := [f"{name} = {with_unit(same[name], QUANTITIES[name].unit)}" for name in numbers]:
+        if shared := [f"{name} = {with_unit(same[name], unit_of(name))}" for name in numbers]:
             above.append(f"In all rows: {', '.join(shared)}.")
         page.say(*above)
         if table and (len(same) < len(shown) or not shown):
@@ -101,8 +106,7 @@ class SweepPage:
                 named = any(point.name for point in range_.points)
                 columns[_head(range_.label, range_.unit.in_words)] = points if named else aligned(points)
             for name in [name for name in shown if name not in same]:
-                unit = QUANTITIES[name].unit if name in QUANTITIES else ""
-                columns[_head(name, unit)] = aligned(shown[name])
+                columns[_head(name, "" if name == "regime" else unit_of(name))] = aligned(shown[name])
             lines = zip(*columns.values(), strict=True)
             # Groups are the points of the range that varies slowly, or the regimes along a single range.
             slow = sweep.ranges[0].name
@@ -110,6 +114,13 @@ class SweepPage:
             parts = [[next(lines) for _ in group] for _, group in groups]
             page.table(list(columns), parts, keys=len(sweep.ranges))
         page.say(*self.remarks, *self.tally.reasons_of([*self.tally.asked, *shown]))
+
+
+def usual_quantities(scene: Scene) -> Sequence[str]:
+    """Return the quantities of a sweep unless others are named: the usual ones, and those of a fall."""
+    if scene.lacking:
+        return ["capstan_ratio", *(LIMITS_OF_ONE_MASS if len(scene.lacking) == 1 else ())]
+    return [name for name in Answers(scene).names if name in (*STANDARD, *FROM_MOTION["fall"][:3])]
 
 
 PULLEY = "critical_pulley_mass"

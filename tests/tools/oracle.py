@@ -114,7 +114,7 @@ def measured(scene: Any) -> tuple[Any, Scene]:
     a, s, t, v, *_ = scene.motion
     if a is None:  # from rest: s = a t²/2, v = a t
         a = v / t if s is None else v * v / (2 * s) if t is None else 2 * s / t**2
-        a *= (-1 if m2 == 0 else 1) if finds in ("m1", "m2") else side(m2 - m1)
+        a *= 1 if finds == "drive" else (-1 if m2 == 0 else 1) if finds in ("m1", "m2") else side(m2 - m1)
     c = scene.I / scene.R**2 if scene.I else 0 if scene.M in (None, inf) else beta * scene.M
     d = (side(m2 - m1) or -side(a)) if finds == "axle" else side(a)
     f = d * (scene.axle or 0)
@@ -131,15 +131,23 @@ def measured(scene: Any) -> tuple[Any, Scene]:
 def expected(scene: Scene) -> dict[str, Any]:
     """Regime and every quantity, as the contract says; None where undetermined.
 
-    What a measured motion finds is computed anew.
+    What a measured motion finds is computed anew. On a driven pulley l is the mass under the lesser tension,
+    and all that moves goes by (1): T_l = l (g + a), T_h = h (g - a).
     """
+    if None in (scene.m1, scene.m2):
+        return beside_a_missing_mass(scene)
     found_a, scene = measured(scene)
     finds = scene.motion.finds
+    driven = finds == "drive"
     locked = scene.M == inf
     g, mu, mu_k, R, beta = map(rational, (scene.g, scene.mu, scene.mu_k, scene.R, scene.inertia))
     mass = None if locked else rational(scene.M)
     l, h = sorted(map(rational, (scene.m1, scene.m2)))
     s = side(scene.m2 - scene.m1) or (-side(found_a) if finds == "axle" else 0)  # the way it moves
+    if driven:
+        s = side(scene.m2 * (scene.g - found_a) - scene.m1 * (scene.g + found_a))
+        l, h = map(rational, (scene.m1, scene.m2) if s >= 0 else (scene.m2, scene.m1))
+    away = rational(found_a * (s or 1)) if driven else None
     zero, one, wrap = rational(0), rational(1), rational(scene.wrap.number)
     c = None
     if scene.I is not None:
@@ -152,10 +160,10 @@ def expected(scene: Scene) -> dict[str, Any]:
     f = zero
     if scene.axle is not None:
         f = rational(scene.axle)
-    rests = 0 < (h - l) * g <= f and finds != "axle"  # the axle holds the pulley
+    rests = 0 < (h - l) * g <= f and finds not in ("axle", "drive")  # the axle holds the pulley
     held = locked or rests
-    known = held or c is not None
-    equal = s == 0 or (c == 0 and f == 0)
+    known = held or driven or c is not None
+    equal = s == 0 or (c == 0 and f == 0 and not driven)
 
     def phi() -> Any:
         return flint.arb(wrap) if scene.wrap.unit == "rad" else flint.arb.pi() * wrap / 180
@@ -183,8 +191,8 @@ def expected(scene: Scene) -> dict[str, Any]:
 
     grip = turning = None
     if l and known:
-        grip = h / l if held or c is None else ratio(falls(c))
-    if f and l and s and not rests:
+        grip = ratio(away) if driven else h / l if held or c is None else ratio(falls(c))
+    if f and l and s and not rests and not driven:
         turning = ratio(falls(zero))  # of a pulley without mass, against the axle
     always = bool(turning is not None and mu is not None and beats(turning))
     out: dict[str, Any] = dict.fromkeys((*NAMES, *MEASURED))
@@ -202,7 +210,13 @@ def expected(scene: Scene) -> dict[str, Any]:
     state: Any = None  # |a|, T_l, T_h
     friction_mu: Any = None
     at_limit: Any
-    if regime == "no-slip":
+    if driven:
+        state = away, l * (g + away), h * (g - away)
+        if equal and l:
+            friction_mu = zero
+        elif grip is not None and mu is None:
+            friction_mu = lambda: log(grip) / phi()  # noqa: E731
+    elif regime == "no-slip":
         if s == 0:
             state = zero, l * g, l * g
         elif held:
@@ -238,8 +252,9 @@ def expected(scene: Scene) -> dict[str, Any]:
     if state is not None:
         a, t_l, t_h = state
         t1, t2 = (t_l, t_h) if s >= 0 else (t_h, t_l)
-        out["acceleration"] = combine(lambda v: s * v, a)
+        out["acceleration"] = rational(found_a) if driven else combine(lambda v: s * v, a)
         out["tension_1"], out["tension_2"] = t1, t2
+        out["tension_difference"] = combine(lambda y, x: y - x, t2, t1)
         if friction_mu == 0:
             out["friction_force"] = out["friction_force_x"] = out["friction_force_y"] = zero
         elif friction_mu is not None:
@@ -256,15 +271,19 @@ def expected(scene: Scene) -> dict[str, Any]:
             out["friction_force_y"] = lambda: integral("imag")
             out["friction_force"] = lambda: (integral("real") ** 2 + integral("imag") ** 2).sqrt()
         rim = a
-        if regime == "slip":
+        if regime == "slip" and not driven:
             # The axle takes f of what turns the pulley, or all of it.
             left = combine(lambda hi, lo: hi - lo - f, t_h, t_l)
             turns = sign(left) > 0 if callable(left) else left > 0
             rim = zero if rests or c is None or (f and not turns) else combine(lambda x: x / c, left)
-        out["rim_acceleration"] = combine(lambda v: s * v, rim)
+        if not (driven and regime == "slip"):
+            out["rim_acceleration"] = combine(lambda v: (s or 1) * v, rim)
         if R is not None:
             out["torque"] = combine(lambda y, x: (y - x) * R, t2, t1)
-            out["angular_acceleration"] = combine(lambda v: s * v / R, rim)
+            if out["rim_acceleration"] is not None:
+                out["angular_acceleration"] = combine(lambda v: v / R, out["rim_acceleration"])
+    if R is not None and c is not None and not (scene.M is None is scene.I):
+        out["moment_of_inertia"] = c * R**2
     if regime == "verge":
         out["mu_verge"] = mu
     elif l and equal:
@@ -285,7 +304,9 @@ def expected(scene: Scene) -> dict[str, Any]:
             out["safety_factor"] = zero if mu == 0 else lambda: mu * phi() / log(grip)
         # What (1) and (3) with f say at T_h = k T_l, of each mass in turn; z is l (k - 1), and b is f/g.
         b = f / g
-        if locked or (f and (h * g <= f or beats(h * g / (h * g - f)))):
+        if driven:
+            out["critical_lighter_mass"] = of_k(mu, lambda k: h * (g - away) / (k * (g + away)))
+        elif locked or (f and (h * g <= f or beats(h * g / (h * g - f)))):
             out["critical_lighter_mass"] = of_k(mu, lambda k: h / k)
         elif c is not None:
             out["critical_lighter_mass"] = (
@@ -298,7 +319,7 @@ def expected(scene: Scene) -> dict[str, Any]:
             out["least_wrap"] = in_degrees if mu else zero
         elif grip is not None and mu:
             out["least_wrap"] = lambda: log(grip) / mu * 180 / flint.arb.pi()
-        if slips_locked and not always and not rests and beta is not None:
+        if slips_locked and not always and not rests and not driven and beta is not None:
 
             def critical_pulley_mass(k: Any) -> Any:
                 z = l * (k - 1)
@@ -306,10 +327,12 @@ def expected(scene: Scene) -> dict[str, Any]:
                 return (z * (g + a) - f) / a / beta
 
             out["critical_pulley_mass"] = of_k(mu, critical_pulley_mass)
-        out["least_heavier_mass"] = of_k(mu, lambda k: l * k)
-        if beta is not None and not (f and beats(1 + b / l)):
+        out["least_heavier_mass"] = of_k(mu, lambda k: l * k * ((g + away) / (g - away) if driven else 1))
+        if beta is not None and not (f and beats(1 + b / l)) and not driven:
             out["least_pulley_mass"] = of_k(mu, lambda k: (2 * l * (k - 1) - b) / beta)
-        if locked or (f and beats(1 + b / l)):
+        if driven:
+            out["critical_heavier_mass"] = out["least_heavier_mass"]
+        elif locked or (f and beats(1 + b / l)):
             out["critical_heavier_mass"] = of_k(mu, lambda k: l * k)
         elif c is not None and l and beats(1 + (c + b) / (2 * l)):
 
@@ -328,28 +351,64 @@ def expected(scene: Scene) -> dict[str, Any]:
         out[FOUND[finds]] = rational(getattr(scene, finds))
     if R is not None and finds == "axle":
         out["axle_torque"] = f * R
-    if R is not None and finds == "M":
-        out["moment_of_inertia"] = c * R**2
+    if driven and regime == "no-slip" and c is not None and (found_a or not f):
+        t1, t2 = out["tension_1"], out["tension_2"]
+        out["drive_force"] = c * rational(found_a) + f * side(found_a) - (t2 - t1)  # (3)
+        out["drive_torque"] = None if R is None else out["drive_force"] * R
     fall: Any = (None if x is None else abs(rational(x)) for x in scene.motion[1:4])
     drop, time, speed = fall
     from_rest = finds != "axle" or s * found_a > 0
     if {drop, time, speed} != {None} and from_rest and state is not None and state[0] != 0:
-        a = state[0]
+        a = rational(abs(found_a)) if driven else state[0]
         height = lambda a: a * time**2 / 2 if speed is None else speed**2 / (2 * a)  # noqa: E731
         out["drop"] = None if drop is not None else combine(height, a)  # v² = 2 a s
         out["fall_time"] = time or combine(lambda a: root(2 * drop / a) if drop else speed / a, a)
         out["final_speed"] = speed or combine(lambda a: root(2 * drop * a) if drop else a * time, a)
+        rim, falls_by = out["rim_acceleration"], drop or out["drop"]
+        if rim is not None:
+            share = combine(lambda x, y: abs(x) / y, rim, a) if regime == "slip" else one
+            if R is not None:
+                turns = combine(lambda v, q: v * q / R, out["final_speed"], share)
+                out["final_angular_speed"] = turns if callable(rim) or rim else zero
+
+            def energy(height: Any, q: Any, difference: Any) -> Any:
+                """What gravity and the drive give, less what the axle takes, and a string that slips."""
+                lost = f * q * height + abs(difference) * (1 - q) * height
+                way = side(found_a) if driven else s
+                driving = out["drive_force"] * way if driven and out["drive_force"] is not None else 0
+                return (rational(scene.m2 - scene.m1) * g * way + driving) * height - lost
+
+            if not driven or out["drive_force"] is not None:
+                out["kinetic_energy"] = combine(energy, falls_by, share, out["tension_difference"])
     return {name: Fraction(int(x.p), int(x.q)) if isinstance(x, flint.fmpq) else x for name, x in out.items()}
 
 
+def beside_a_missing_mass(scene: Scene) -> dict[str, Any]:
+    """What holds beside a mass that is not given: the limits are those beside an equal one."""
+    given = scene.m1 or scene.m2 or Fraction(1)
+    twins = expected(scene._replace(m1=given, m2=given))
+    both = {} if scene.m1 is scene.m2 is None else dict.fromkeys(LIMITS)
+    held = {x: twins[x] for x in ("capstan_ratio", "moment_of_inertia", *both)}
+    if both and scene.M is scene.I is None:  # on any pulley: on a locked one
+        locked = expected(scene._replace(m1=given, m2=given, M=inf))
+        held |= {x: locked[x] for x in ("critical_heavier_mass", "critical_lighter_mass")}
+    return dict.fromkeys(twins) | held
+
+
+LIMITS = "critical_heavier_mass critical_lighter_mass least_heavier_mass least_pulley_mass".split()
+"""The limits of one mass, by the other one alone."""
 NAMES = """
-    regime acceleration tension_1 tension_2 mu_verge safety_factor tension_ratio capstan_ratio
+    regime acceleration tension_1 tension_2 tension_difference mu_verge safety_factor tension_ratio capstan_ratio
     friction_force friction_force_min friction_force_max friction_force_x friction_force_y
     axle_force torque rim_acceleration angular_acceleration
     critical_pulley_mass critical_heavier_mass critical_lighter_mass
-    least_heavier_mass least_pulley_mass least_wrap
+    least_heavier_mass least_pulley_mass least_wrap moment_of_inertia
 """.split()
 FOUND = {"M": "pulley_mass", "g": "gravity", "m1": "m1", "m2": "m2", "axle": "axle"}
 """The quantity that is an input, if a motion finds it."""
-MEASURED = [*FOUND.values(), *"moment_of_inertia mu_k axle_torque drop fall_time final_speed".split()]
+MEASURED = [
+    *FOUND.values(),
+    *"mu_k axle_torque drive_force drive_torque".split(),
+    *"drop fall_time final_speed final_angular_speed kinetic_energy".split(),
+]
 """The quantities of measured motions."""

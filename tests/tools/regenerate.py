@@ -20,6 +20,7 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from atwood_cli.cli import COMMANDS
+from atwood_cli.cli.solve import implied
 from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.names import read_names
 from atwood_cli.solver.quantities import QUANTITIES
@@ -161,8 +162,9 @@ def denied(text: str) -> Iterator[str]:
         options = [*pairwise(chain.from_iterable(parts))]
         inputs = {x: dict(options).get(f"--{x.replace('_', '-')}") for x in (*INPUTS, *MEASURED, "find")}
         try:
-            truth = oracle.expected(read_answers(inputs, None).decided.scene)
             only = read_names("only", [names for option, names in options if option == "--only"], QUANTITIES)
+            inputs["find"] = inputs["find"] or implied({*only}, inputs)
+            truth = oracle.expected(read_answers(inputs, None).decided.scene)
         except SceneError:  # as the transcript says
             continue
         out += "".join(f'  "{name}": {bare}\n' for name, bare in zip(only, out.splitlines(), strict=False))

@@ -86,6 +86,16 @@ slips beside an axle | m1=3 m2=1 M=300 mu=0.2 axle=5
 verge beside an axle | mu=0.2 axle=5
 always slips beside an axle | mu=0.05 axle=5
 slips on an axle that holds | mu=0.05 axle=1.2Nm R=0.05 M=1
+driven | M=10 R=0.2 a=-1 find=drive
+driven against gravity | M=10 R=0.2 axle=5 mu=0.9 a=4 find=drive wrap=200
+driven the other way | M=10 R=0.2 axle=5 a=-0.2g mu=0.1 find=drive
+held by a brake | m1=3 m2=1 M=10 mu=0.5 a=0 find=drive
+driven at equal tensions | m2=1 I=0.2 R=0.2 a=0 mu=0.5 find=drive
+a drum | m1=0 M=10 R=0.2 a=-1 find=drive
+driven from rest | M=10 R=0.2 drop=-2 time=3 find=drive
+driven, of any pulley | m1=3 m2=1 mu=0.5 a=1 find=drive
+falls and turns | M=10 R=0.2 drop=2
+slips and turns | m1=3 m2=1 M=300 mu=0.1 R=0.2 drop=2
 nothing but the axle tells the motion | m2=0.3 mu=3 mu_k=2.5 axle=1e300
 finds the pulley | g=9 drop=9 time=3 R=0.1
 finds gravity | M=10 a=2
@@ -220,8 +230,29 @@ def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
         yield with_motion(rng, given) if family.endswith(MEASURED) else given
 
 
+def driven(rng: Random, given: Given) -> Given:
+    """The scene in a motion that a motor or a brake gives, slower than free fall."""
+    given = {name: text for name, text in given.items() if (name, text) != ("M", "inf")}
+    a = read_scene(given).g * Fraction(
+        rng.choice([0, *[rng.choice([-1, 1]) * 10 ** -rng.uniform(0.01, 6)] * 6])
+    )
+    a, time = (
+        Fraction(Context(prec=17).create_decimal(Decimal(float(a)))),
+        Fraction(rng.randint(1, 10**6), 10**3),
+    )
+    fall = {"drop": a * time**2 / 2, "time": time, "speed": a * time}
+    measured = {x: fall[x] for x in rng.sample(FALL, 2)} if a and rng.random() < 0.4 else {"a": a}
+    return (
+        given
+        | {x: f"{value.numerator}/{value.denominator}" for x, value in measured.items()}
+        | {"find": "drive"}
+    )
+
+
 def with_motion(rng: Random, given: Given) -> Given:
     """The scene with one number of a fall from rest; or with a motion, and without the input that this finds."""
+    if rng.random() < 0.2:
+        return driven(rng, given)
     given = given | ({"m2": given["m1"]} if rng.random() < 0.05 else {})
     free = {name: text for name, text in given.items() if name not in ("mu", "mu_k")}
     scene, kept = read_scene(free), oracle.expected(read_scene(given))
