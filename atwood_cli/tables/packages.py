@@ -70,7 +70,7 @@ class Package:
                 raise Unreadable("its XML has too many elements, or is nested too deeply")
             if text_depth:
                 texts.append(BLANKS.get(name, ""))
-            elif attributes:  # of those with the same name the first counts
+            elif ":" in "".join(attributes):  # of those with the same name the first counts
                 attributes = {_local(key): value for key, value in reversed(attributes.items())}
             given.append(attributes)
             if name in begins:
