@@ -229,9 +229,8 @@ def solve_cells(
     import polars as pl
 
     labels = cells[LABEL].to_list() if columns.label else [""] * cells.height
-    cells = cells.select(heading.name for heading in columns.headings)
     as_texts = pl.selectors.decimal() | pl.selectors.by_dtype(pl.Categorical, pl.Enum)
-    cells = cells.with_columns(as_texts.cast(pl.String))
+    cells = cells.select(x.name for x in columns.headings).with_columns(as_texts.cast(pl.String))
     exact = {x: read_exactly(x, wanted.given.get(x)) for x in COLUMNS}
     shared = {x: _double(Heading(0, x, x), False, text) for x, text in wanted.given.items()}
     doubles, singles = _doubles(cells, columns)
@@ -251,10 +250,9 @@ def solve_cells(
     records: list[dict[str, Any]] = [{"row": row, ERROR: error} for row, error in unread.items()]
     solve = cache(partial(_solve_row, columns, exact, wanted))  # as many rows may be alike
     for row in singles - unread.keys():
-        record, lacking, why = solve(cells.row(row))
+        record, lacking, failures[row] = solve(cells.row(row))
         records.append({"row": row, **record})
         reasons.update(lacking)
-        failures |= {row: why} if why else {}
     if records:
         values = pl.concat([values, pl.DataFrame(records, values.schema)]).sort("row")
     numbers = pl.selectors.float()
@@ -265,8 +263,10 @@ def solve_cells(
         results = results.with_columns(numbers.map_elements(lambda x: float(to_digits(x)), pl.Float64))
     hints = _hints(cells, columns, exact, given.get("wrap"), len(singles))
     tally.add(results, reasons, failures, labels, {BEYOND: beyond, **hints})
-    fails = pl.int_range(pl.len()).is_in([*failures]) | pl.col(ERROR).is_not_null()
-    return results.with_columns(fails.not_().alias(EXPECTED)).select(wanted.columns)
+    if wanted.conditions:
+        fails = pl.int_range(pl.len()).is_in([x for x in failures if failures[x]])
+        results = results.with_columns((~fails & pl.col(ERROR).is_null()).alias(EXPECTED))
+    return results.select(wanted.columns)
 
 
 def _solve_together(
@@ -296,7 +296,7 @@ def _judge(
     in_si = ReadColumns([x._replace(unit="", read=Unit(terms=x.read.terms)) for x in columns.headings])
     inputs = {x: read_exactly(x, shared.get(x)) for x in COLUMNS}
     judge = cache(lambda row: failures_of(_answers(in_si, inputs, row), conditions))
-    return {row: why for row in rows if (why := judge(doubles.row(row)))} if conditions else {}
+    return {row: judge(doubles.row(row)) for row in rows} if conditions else {}
 
 
 def _hints(
