@@ -32,7 +32,7 @@ from .runs import Places, Runs, Selection, in_words
 from .statistics import CannotSeparate, Line, distances_from, judge_of_repeats, outliers, spread_of_columns
 
 OUTLIER_LEVEL = 0.012
-"""The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
+"""The chance of a false alarm in a sound set: once among repeats, once among runs. It is from simulations."""
 FEW_REPEATS = 3
 """With fewer degrees of freedom repeats do not judge each other."""
 SELDOM = 0.05
