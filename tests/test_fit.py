@@ -22,7 +22,7 @@ from scipy import optimize, stats
 from atwood_cli import Fit, SceneError
 from atwood_cli import fit as laboratory_fit
 from atwood_cli.laboratory.columns import Kind
-from atwood_cli.laboratory.estimate import Data, Varying, as_data, estimate, expected
+from atwood_cli.laboratory.estimate import Data, Varying, data_of, estimate, expected
 from atwood_cli.laboratory.fitting import conditions_of, fitted
 from atwood_cli.laboratory.report import _correlation
 from atwood_cli.laboratory.results import USUAL, published
@@ -87,9 +87,9 @@ def without_nulls(record: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in record.items() if value is not None}
 
 
-def data_of(kind: Kind, l: Any, h: Any, drop: Any, measured: Any) -> Data:
+def single(kind: Kind, l: Any, h: Any, drop: Any, measured: Any) -> Data:
     """Runs without repeats and uncertainties."""
-    return as_data(simulated_laboratories.runs_of(kind, l, h, drop, measured[:, None]), l > 0)
+    return data_of(simulated_laboratories.runs_of(kind, l, h, drop, measured[:, None]), l > 0)
 
 
 # Data made from the model
@@ -257,7 +257,7 @@ def test_contradictory_runs_are_fitted_as_well_as_by_scipy(kind: Kind, find: lis
     for random in map(Random, range(15)):
         rows = np.array([[random.randint(1, most) for most in (6, 6, 9)] for _ in range(6)], float)
         m1, m2, measured = rows[rows[:, 0] != rows[:, 1]].T
-        data = data_of(kind, np.minimum(m1, m2), np.maximum(m1, m2), np.ones(len(m1)), measured)
+        data = single(kind, np.minimum(m1, m2), np.maximum(m1, m2), np.ones(len(m1)), measured)
         known = {"rim_mass": 0.0, "axle": 0.0, "gravity": G}
         least = 1e-9 - float((data.l + data.h).min())
         low = [least if x == "rim_mass" else -inf for x in find]
@@ -329,7 +329,7 @@ def test_times_of_rit() -> None:
     l, h, t = l / 1000, h / 1000, np.mean(times, 0)
     repeats = np.var(times, 0, ddof=1).mean() / 3 + 0.01**2 / 12  # read to 0.01 s
     runs = simulated_laboratories.runs_of("time", l, h, 0 * l + 0.98, np.transpose(times), step=0.01)
-    data, fits = as_data(runs, l > 0), dict[str, Any]()
+    data, fits = data_of(runs, l > 0), dict[str, Any]()
 
     def fitted_with(between: float, shape: str) -> tuple[Any, Any, float, float]:
         values = np.array([0.04, 0.015])

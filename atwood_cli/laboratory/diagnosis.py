@@ -17,8 +17,8 @@ from .estimate import (
     Conditions,
     Fitted,
     accelerations,
-    as_data,
     best_fit,
+    data_of,
     estimate,
     expected,
     line_of,
@@ -86,7 +86,7 @@ def contradiction(fit: Fitted) -> str:
     if held:
         return f"{fit.runs.rows_in_words(*held)} would not move, as the fitted axle holds that; {CHECK}"
     causes = _in_words(_repairs(fit, _freed(fit)))
-    return causes or impossible(fit.runs, fit.used, fit.given, fit.names)[0] or CHECK
+    return causes or impossible(fit.runs, fit.used, fit.shared, fit.names)[0] or CHECK
 
 
 # What may be wrong in all runs
@@ -96,8 +96,8 @@ def _freed(fit: Fitted) -> dict[str, Fitted]:
     """Return the fits of one more quantity, the last of their names, where the runs determine it, too."""
     freed = dict[str, Fitted]()
     for name in (x for x in FITTED if x not in fit.names and (x != "delay" or fit.runs.kind == "time")):
-        names, known = [*fit.names, name], {x: fit.given.values[x] for x in fit.given.values if x != name}
-        if fit.line.dof > 1 and separates(fit.data, fit.given.values, names):
+        names, known = [*fit.names, name], {x: fit.shared.values[x] for x in fit.shared.values if x != name}
+        if fit.line.dof > 1 and separates(fit.data, fit.shared.values, names):
             with suppress(CannotSeparate, ZeroDivisionError):
                 values, line = estimate(fit.data, known, names, fit.values)
                 freed[name] = fit._replace(names=names, values=values, line=line)
@@ -112,7 +112,7 @@ def is_negative(name: str, value: float, u: float, line: Line | None = None) -> 
 def _is_plausible(freed: Fitted) -> bool:
     """Decide if what must be above 0 may be, and if a freed quantity is of a size that it may have."""
     name, shortest = freed.names[-1], float(freed.data.measured.min())
-    of_gravity = PLAUSIBLE["of a height" if "drop" in freed.given.inputs else "gravity"]
+    of_gravity = PLAUSIBLE["of a height" if "drop" in freed.shared.inputs else "gravity"]
     sizes = {"gravity": of_gravity, "delay": (PLAUSIBLE_DELAY[0] * shortest, PLAUSIBLE_DELAY[1] * shortest)}
     low, high = sizes.get(name, (-inf, inf))
     pairs = zip(freed.names, freed.line.u, strict=True)
@@ -148,7 +148,7 @@ def _repairs(fit: Fitted, freed: Mapping[str, Fitted]) -> list[Fitted]:
     scale, dof = _variance(best)
     if fdtrc(1, dof, max(fit.line.chi2 - best.chi2, 0) / scale) * len(causes) < RARE:
         return [cause for cause in causes if cause.line.chi2 < _as_good(best)]
-    is_certain = "rim_mass" in fit.given.values and not any(fit.given.inputs[x].uncertainty for x in "MIR")
+    is_certain = "rim_mass" in fit.shared.values and not any(fit.shared.inputs[x].uncertainty for x in "MIR")
     return [
         x for x in causes if x is freed.get("rim_mass") and is_certain and changes["rim_mass"] > x.line.times
     ]
@@ -161,17 +161,17 @@ def _in_words(causes: Sequence[Fitted]) -> str:
 
 def _cause(freed: Fitted) -> str:
     """Say what a freed quantity would be, and how to fit it."""
-    name, given = freed.names[-1], freed.given
+    name, shared = freed.names[-1], freed.shared
     value, u = freed.values[name], freed.line.u[-1]
     if name == "delay":
         words = f"all times are {published(abs(value), u)[0]} s too {'long' if value > 0 else 'short'}"
     else:
-        what = f"{name} (or the height of fall)" if name == "gravity" and "drop" in given.inputs else name
-        unit, instead = QUANTITIES[name].unit, rounded(given.values.get(name, 0.0), 3)
+        what = f"{name} (or the height of fall)" if name == "gravity" and "drop" in shared.inputs else name
+        unit, instead = QUANTITIES[name].unit, rounded(shared.values.get(name, 0.0), 3)
         words = f"{what} is {published(value, u)[0]} {unit}, not {instead}"
-    typed = [x for x in QUANTITIES[name].given_by if given.inputs[x].given is not None]
-    without = f"without {given.option(typed[0])}: " if typed else ""
-    return f"{words} ({without}{given.option('find', ','.join(freed.names))})"
+    typed = [x for x in QUANTITIES[name].given_by if shared.inputs[x].given is not None]
+    without = f"without {shared.option(typed[0])}: " if typed else ""
+    return f"{words} ({without}{shared.option('find', ','.join(freed.names))})"
 
 
 def _unseen_delay(fit: Fitted, freed: Mapping[str, Fitted]) -> str:
@@ -183,7 +183,7 @@ def _unseen_delay(fit: Fitted, freed: Mapping[str, Fitted]) -> str:
         return ""
     if one and _is_plausible(one):
         value, _ = published(one.values["delay"], one.line.u[-1])
-        gives = f" ({fit.given.option('find', ','.join(one.names))} gives {value} s)"
+        gives = f" ({fit.shared.option('find', ','.join(one.names))} gives {value} s)"
     wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
     late = f"the runs cannot show whether all times are too long by a delay{gives}"
     return f"{late}; the results assume none. {wider}"
@@ -210,7 +210,7 @@ def _far(fit: Fitted) -> tuple[Distances, Distances, Fitted, Line]:
             single = runs._replace(
                 given=given, u=u, left_out=runs.left_out[run_of], run=np.arange(len(run_of))
             )
-            clean = best_fit(single, fit.used[run_of], fit.given, fit.names)
+            clean = best_fit(single, fit.used[run_of], fit.shared, fit.names)
         elif cells := _far_repeats(fit, places, free):
             clean = _without(fit, cells)
     far, line = _far_runs(clean)
@@ -224,7 +224,7 @@ def _without(fit: Fitted, far: Distances) -> Fitted:
     old, kept = fit.runs, np.delete(np.arange(len(fit.runs.values)), [*far])
     runs = old._replace(values=old.values[kept], u_values=old.u_values[kept], run=old.run[kept])
     used = fit.used & (np.bincount(runs.run, minlength=len(fit.used)) > 0)
-    return best_fit(runs._replace(cells=[old.cells[i] for i in kept.tolist()]), used, fit.given, fit.names)
+    return best_fit(runs._replace(cells=[old.cells[i] for i in kept.tolist()]), used, fit.shared, fit.names)
 
 
 def _named(fit: Fitted, far: Distances) -> list[tuple[int, str]]:
@@ -242,7 +242,7 @@ def _named(fit: Fitted, far: Distances) -> list[tuple[int, str]]:
         what = f"{in_words(*where)}{value} {'is' if len(where) == 1 else 'are'}"
         left_out = ",".join(map(str, where))
         why = f"{rounded(abs(distance))} standard deviations from what the others give"
-        way = f"if it is a mistake, leave it out: {fit.given.option('without', left_out)}"
+        way = f"if it is a mistake, leave it out: {fit.shared.option('without', left_out)}"
         messages.setdefault(left_out, (run, f"{what} {why}; {way}"))
     return [*messages.values()]
 
@@ -267,13 +267,13 @@ def _far_runs(fit: Fitted) -> tuple[Distances, Line]:
     """
     usable, data, names = np.flatnonzero(fit.used), fit.data, fit.names
     values = {**fit.values, "rim_mass": max(fit.values["rim_mass"], 0.0)}
-    given = {x: value for x, value in values.items() if x not in names}
+    known = {x: value for x, value in values.items() if x not in names}
 
     def line_by(some: Selection) -> Line:
         if "delay" not in names:
             return line_of(of_forces, data, values, names)
-        others = as_data(fit.runs, np.isin(np.arange(len(fit.used)), usable[some]))
-        best, _ = estimate(others._replace(varying=data.varying), given, names, values)
+        others = data_of(fit.runs, np.isin(np.arange(len(fit.used)), usable[some]))
+        best, _ = estimate(others._replace(varying=data.varying), known, names, values)
         return line_of(of_measured, data, best, names)
 
     free = len(usable) - len(names)
@@ -311,13 +311,13 @@ def _is_sound(fit: Fitted) -> bool:
 
 
 def impossible(
-    runs: Runs, used: Selection, given: Conditions, names: Sequence[str], most: float = 1.0
+    runs: Runs, used: Selection, shared: Conditions, names: Sequence[str], most: float = 1.0
 ) -> tuple[str, float]:
     """Say which accelerations are far below, or above ``most`` times, that of free masses; and how many."""
     if "gravity" in names or "delay" in names:
         return "", 0.0
-    data = as_data(runs, used)
-    free: Any = physics.acceleration(data.h - data.l, data.h + data.l, given.values["gravity"])
+    data = data_of(runs, used)
+    free: Any = physics.acceleration(data.h - data.l, data.h + data.l, shared.values["gravity"])
     a = accelerations(data, data.measured)
     is_impossible = (a / free < LEAST_SHARE) | (a / free > most)
     if not is_impossible.any():
@@ -325,7 +325,7 @@ def impossible(
     places, i = np.flatnonzero(used)[is_impossible].tolist(), int(np.argmax(is_impossible))
     others, gives = used & ~np.isin(np.arange(len(used)), places), ""
     with suppress(CannotSeparate):
-        if others.any() and _is_sound(rest := best_fit(runs, others, given, names)):
+        if others.any() and _is_sound(rest := best_fit(runs, others, shared, names)):
             results = zip(names, rest.line.u, strict=True)
             gives = f"; the others give {', '.join(equation(x, rest.values[x], u) for x, u in results)}"
     value, times, usual = (rounded(float(x), 3) for x in (a[i], a[i] / free[i], free[i]))

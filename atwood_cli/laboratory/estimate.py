@@ -55,7 +55,7 @@ class Data(NamedTuple):
     varying: Varying
 
 
-def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
+def data_of(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
     """Return the runs that are ``used``, by their measurements that are ``kept``."""
     here = used[runs.run] if kept is None else used[runs.run] & kept
     run = (np.cumsum(used) - 1)[runs.run[here]]
@@ -150,15 +150,15 @@ def line_of(residual: Residual, data: Data, values: Mapping[str, float], names: 
     return fit_line(J, residual(data, values), known, scale, data.known_dof)
 
 
-def separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> bool:
+def separates(data: Data, known: Mapping[str, float], names: Sequence[str]) -> bool:
     """Decide if runs with these masses and heights determine the quantities, whatever was measured.
 
     The singular values of the slopes at a plausible pulley tell, each slope scaled to the length 1.
     """
     design = data._replace(measured=np.full_like(data.l, inf))
-    least = float((data.h - data.l).min()) * given["gravity"]
-    values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), "delay": 0.0, **given}
-    values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
+    least = float((data.h - data.l).min()) * known["gravity"]
+    values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), "delay": 0.0, **known}
+    values["axle"] = min(known.get("axle", least), 0.1 * least)  # with which each run moves
     J: Any = slopes(of_measured, design, values, names) / expected(design, values)[:, None]
     singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
     return bool(singular.min(initial=1.0) > LEAST_SINGULAR)
@@ -167,23 +167,23 @@ def separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> b
 # Least squares
 
 
-def by_forces(data: Data, given: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
+def by_forces(data: Data, known: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
     """Return the values with the least squares of forces, by which others start, and the given ones."""
-    values = {**dict.fromkeys(FITTED, 0.0), **given}
+    values = {**dict.fromkeys(FITTED, 0.0), **known}
     rest = of_forces(data, values)
     changes = np.linalg.lstsq(slopes(of_forces, data, values, names), rest, rcond=None)[0]
     return values | {x: values[x] + float(change) for x, change in zip(names, changes, strict=True)}
 
 
 def estimate(
-    data: Data, given: Mapping[str, float], names: Sequence[str], near: Mapping[str, float] | None = None
+    data: Data, known: Mapping[str, float], names: Sequence[str], near: Mapping[str, float] | None = None
 ) -> tuple[dict[str, float], Line]:
     """Weighted least squares for ``names``, starting at ``near``. Raises CannotSeparate.
 
     Return the values, given ones too, and the linear fit at these. Variances follow the values (effective
     variance), and least squares the variances.
     """
-    first = {**(near or by_forces(data, given, names)), **given}
+    first = {**(near or by_forces(data, known, names)), **known}
     lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
     least = [lightest if name == "rim_mass" else -inf for name in names]
     exactly: Any = {"ftol": 1e-15, "xtol": 1e-12, "gtol": None, "jac": "cs", "x_scale": "jac"}
@@ -243,7 +243,7 @@ class Fitted(NamedTuple):
     runs: Runs
     used: Selection
     shown: Selection
-    given: Conditions
+    shared: Conditions
     names: Sequence[str]
     data: Data
     values: Mapping[str, float]
@@ -253,20 +253,20 @@ class Fitted(NamedTuple):
     causes: Sequence[str] = ()
 
 
-def best_fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Fitted:
+def best_fit(runs: Runs, used: Selection, shared: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit with the likelier scatter between runs. Raises CannotSeparate.
 
     Where repeats, or stated uncertainties, show the scatter of times, that between runs is one of times or of
     forces: with the greater restricted likelihood, or of times if both are as likely. A fit whose axle would
     hold a run that moved loses.
     """
-    data, fits = as_data(runs, used), list[Fitted]()
+    data, fits = data_of(runs, used), list[Fitted]()
     either: tuple[Varying, ...] = ("time", "force") if data.varying == "time" else (data.varying,)
     for varying in either:
         with suppress(CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
             shaped = data._replace(varying=varying)
             fits.append(
-                Fitted(runs, used, used, given, names, shaped, *estimate(shaped, given.values, names))
+                Fitted(runs, used, used, shared, names, shaped, *estimate(shaped, shared.values, names))
             )
     if not fits:
         raise CannotSeparate

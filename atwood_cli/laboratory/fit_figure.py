@@ -7,7 +7,7 @@ import numpy as np
 from ..output.figure import BLUE, FAINT, INK, RED, saved, typeset, write_beside
 from ..output.forms import Picture
 from ..solver import physics
-from .estimate import Fitted, accelerations, as_data
+from .estimate import Fitted, accelerations, data_of
 from .report import conditions, verdict
 from .results import equation
 
@@ -18,7 +18,7 @@ MEANING = {"rim_mass": "slope c", "axle": "intercept f", "gravity": "g", "delay"
 
 def save(fit: Fitted, picture: Picture) -> None:
     """Draw runs and their line to a file. Raises OSError."""
-    used, data = fit.used[fit.shown], as_data(fit.runs, fit.shown)
+    used, data = fit.used[fit.shown], data_of(fit.runs, fit.shown)
     g, c, f, delay = (fit.values[name] for name in ("gravity", "rim_mass", "axle", "delay"))
     a = accelerations(data, np.where(data.measured > delay, data.measured, np.nan), delay)
     difference: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(g))

@@ -16,9 +16,9 @@ from .diagnosis import CHECK, MOST_SHARE, columns_in_doubt, contradiction, diagn
 from .estimate import (
     Conditions,
     Fitted,
-    as_data,
     best_fit,
     by_forces,
+    data_of,
     estimate,
     line_of,
     moves,
@@ -50,7 +50,7 @@ def conditions_of(inputs: Mapping[str, Input], option: Callable[..., str] = in_p
     return Conditions(inputs, Scene.of({**inputs, **masses}), option)
 
 
-def read_find(words: Sequence[str], given: Conditions) -> list[str]:
+def read_find(words: Sequence[str], shared: Conditions) -> list[str]:
     """Return the quantities to fit, by names or symbols; both usual ones unless given. Raises SceneError.
 
     None may be given, and of the usual ones none may be neither given nor fitted.
@@ -62,14 +62,14 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     names = list(dict.fromkeys(read_names("find", words, FITTED, "quantity to fit", SYMBOLS)))
     for name in names:
         for known in QUANTITIES[name].given_by:
-            if given.inputs[known].given is not None:
+            if shared.inputs[known].given is not None:
                 rule = f"conflicts with {known}, which gives it; leave one of them out"
                 raise SceneError("find", name, rule)
-    for x, terms in given.scene.terms if "gravity" in names else ():
+    for x, terms in shared.scene.terms if "gravity" in names else ():
         if terms.by == "g":
             rule = f"is {terms.words}, and gravity is to be found; give it in kg"
-            raise SceneError(x, given.inputs[x].given, rule)
-    left = [x for x in USUAL if x not in names and x not in given.values]
+            raise SceneError(x, shared.inputs[x].given, rule)
+    left = [x for x in USUAL if x not in names and x not in shared.values]
     if names and left:
         what, give = (" and ".join(words[x] for x in left) for words in (RESULTS, GIVE))
         rule = f"needs {what}: give {give}, or find {' and '.join(left)}, too"
@@ -81,12 +81,12 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
 
 
 @np.errstate(all="ignore")  # what a step tries may be 0, or beyond doubles
-def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
+def fitted(runs: Runs, shared: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of these quantities, with outliers and causes. Raises SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
         raise SceneError("find", "delay", "needs times; the table has accelerations")
     difference = runs.given["m2"] - runs.given["m1"]
-    held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
+    held = 0.0 if "gravity" in names else shared.values.get("axle", 0.0) / shared.values["gravity"]
     unusable = {
         "the masses are equal": difference == 0,
         "nothing moved": runs.mean == 0,
@@ -104,21 +104,21 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     try:
         if not used.any():
             raise CannotSeparate("no run can be used")
-        data = as_data(runs, used)
+        data = data_of(runs, used)
         what = [QUANTITIES[x].words for x in names]
         needed = len(names) + int(data.varying == "value" and not data.uncertain)
         if len(data.l) < needed:
             why = f"{counted(len(data.l), 'run')} cannot determine {' and '.join(what)}"
             raise CannotSeparate(f"{why}: give {needed} or more")
-        doubt, share = impossible(runs, used, given, names, MOST_SHARE)
+        doubt, share = impossible(runs, used, shared, names, MOST_SHARE)
         if share > 0.5:
             raise CannotSeparate
-        if not separates(data, given.values, names):
+        if not separates(data, shared.values, names):
             give, is_one = (f", or give {GIVE[x]}" for x in names if x in GIVE), len(names) == 1
             why = f"determine {what[0]}" if is_one else f"separate {' from '.join(what)}"
             vary = f"vary both m2 - m1 and m1 + m2 more{'' if is_one else ''.join(give)}"
             raise CannotSeparate(f"the runs do not {why}: {vary}")
-        fit = _with_results(runs, used, given, names)
+        fit = _with_results(runs, used, shared, names)
     except CannotSeparate as error:
         raise CannotSeparate(f"{doubt or error}{behind_an_error([*remarks, *runs.doubts])}") from None
     fit = diagnosed(fit._replace(shown=shown), is_mixed=bool(columns))
@@ -130,21 +130,21 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     return fit._replace(causes=causes)
 
 
-def _with_results(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Fitted:
+def _with_results(runs: Runs, used: Selection, shared: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of the runs that are used. Raises CannotSeparate."""
     try:
-        fit = best_fit(runs, used, given, names)
+        fit = best_fit(runs, used, shared, names)
         ends = [*_at_ends(fit)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        message, data = impossible(runs, used, given, names)[0] or CHECK, as_data(runs, used)
+        message, data = impossible(runs, used, shared, names)[0] or CHECK, data_of(runs, used)
         with suppress(CannotSeparate):
-            values = by_forces(data, given.values, names)
+            values = by_forces(data, shared.values, names)
             line = line_of(of_forces, data, values, names)
-            message = contradiction(Fitted(runs, used, used, given, names, data, values, line))
+            message = contradiction(Fitted(runs, used, used, shared, names, data, values, line))
         raise CannotSeparate(f"{NO_FIT}: {message}") from None
     line, results = fit.line, dict[str, Result]()
-    spread = _with_derived(dict(zip(names, line.u, strict=True)), names, given)
-    for x, value in _with_derived(fit.values, names, given).items():
+    spread = _with_derived(dict(zip(names, line.u, strict=True)), names, shared)
+    for x, value in _with_derived(fit.values, names, shared).items():
         u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in ends))
         results[x] = Result(value, u, (value - line.times * u, value + line.times * u))
         if x in names and is_negative(x, value, u, line):
@@ -157,29 +157,29 @@ def _with_results(runs: Runs, used: Selection, given: Conditions, names: Sequenc
 def _at_ends(fit: Fitted) -> Iterator[list[dict[str, float]]]:
     """Yield results with each uncertain input of all runs at both ends. Raises SceneError, CannotSeparate."""
 
-    def at(runs: Runs, given: Conditions) -> dict[str, float]:
-        data = as_data(runs, fit.used)._replace(varying=fit.data.varying)
-        return _with_derived(estimate(data, given.values, fit.names, fit.values)[0], fit.names, given)
+    def at(runs: Runs, shared: Conditions) -> dict[str, float]:
+        data = data_of(runs, fit.used)._replace(varying=fit.data.varying)
+        return _with_derived(estimate(data, shared.values, fit.names, fit.values)[0], fit.names, shared)
 
-    runs, given = fit.runs, fit.given
-    for x, typed in given.inputs.items():
+    runs, shared = fit.runs, fit.shared
+    for x, typed in shared.inputs.items():
         if u := typed.uncertainty:
-            size = given.scene.number_of(x)
+            size = shared.scene.number_of(x)
             if not parameter_of(x).may_be_zero and u >= size:
                 raise SceneError(x, typed.given, REACHES_0)
-            scenes = [given.scene.with_number(x, end) for end in (size - u, size + u)]
-            yield [at(runs, given._replace(scene=scene)) for scene in scenes]
+            scenes = [shared.scene.with_number(x, end) for end in (size - u, size + u)]
+            yield [at(runs, shared._replace(scene=scene)) for scene in scenes]
     for name, spread in runs.common.items():
         shifted = MASSES if name == "hanger" else (name,)
         for_ends = [{**runs.given, **{x: runs.given[x] + u for x in shifted}} for u in (-spread, spread)]
-        yield [at(runs._replace(given=end), given) for end in for_ends]
+        yield [at(runs._replace(given=end), shared) for end in for_ends]
 
 
-def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
+def _with_derived(values: Mapping[str, float], names: Sequence[str], shared: Conditions) -> dict[str, float]:
     """Return the fitted values, with what follows from the rim mass by R and by the shape, if given."""
-    results, scene = {x: values[x] for x in FITTED if x in names}, given.scene
+    results, scene = {x: values[x] for x in FITTED if x in names}, shared.scene
     if "rim_mass" in results:
-        if given.inputs["inertia"].number is not None:
+        if shared.inputs["inertia"].number is not None:
             results["pulley_mass"] = results["rim_mass"] / float(scene.inertia or 0)
         if scene.R is not None:
             results["moment_of_inertia"] = physics.moment_of_inertia(results["rim_mass"], float(scene.R))

@@ -18,7 +18,7 @@ from ..solver.answers import Answers
 from ..solver.scene import parameter_of
 from .columns import MEASURED
 from .diagnosis import RARE, SELDOM
-from .estimate import ROUNDING, Fitted, accelerations, as_data, expected, moves
+from .estimate import ROUNDING, Fitted, accelerations, data_of, expected, moves
 from .results import QUANTITIES, RESULTS, USUAL, Fit, cut, equation, published, rounded
 from .statistics import NORMAL_DOF
 
@@ -90,8 +90,8 @@ def _capital(words: str) -> str:
 
 def conditions(fit: Fitted) -> str:
     """Return what is the same in all runs, in words."""
-    inputs = fit.given.inputs
-    words = inputs_in_words(Answers(fit.given.scene, None, inputs))
+    inputs = fit.shared.inputs
+    words = inputs_in_words(Answers(fit.shared.scene, None, inputs))
     g = "" if "gravity" in fit.names else "g"
     inertia = "" if inputs["M"].given is None else "inertia"
     shown = (x for x, typed in inputs.items() if typed.given is not None or x in (g, inertia, "drop"))
@@ -160,7 +160,7 @@ def _correlation(covariance: Any) -> float | None:
 
 def _records(fit: Fitted) -> list[dict[str, Any]]:
     """Return the runs, as JSON and CSV have them; the residual is in standard uncertainties."""
-    runs, shown = fit.runs, as_data(fit.runs, fit.shown)
+    runs, shown = fit.runs, data_of(fit.runs, fit.shown)
     measured, (u, ideal) = runs.mean.copy(), np.full((2, len(runs.rows)), np.nan)
     if fit.data.stated:
         measured[fit.used] = runs.sign[fit.used] * fit.data.measured  # weighted means
