@@ -241,7 +241,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
     rf"(m[12]) is a mass of {NUMBER} kg; for a weight give its unit\.": lambda c, x, mass, digits: claimed(
         lambda c: Fraction(mass) == getattr(c.scene, x) and bool(c.scene.terms)
     )(c),
-    r"A pull by hand is not a hanging weight: .* and acceleration and the other tension differ\.": claimed(
+    r"A pull by hand is not a hanging weight: .* and the acceleration and the other tension differ\.": claimed(
         lambda c: bool(c.scene.terms) and c.expected()["acceleration"] != 0
     ),
     rf"The wrap is {NUMBER}°; for radians write {NUMBER}rad, for turns {NUMBER}turn\.": short_wrap,

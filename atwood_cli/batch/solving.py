@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
 from ..explain.conditions import Condition, failures_of
-from ..explain.messages import LIKE_RADIANS, reasons_in
+from ..explain.messages import LIKE_RADIANS, PULL, reasons_in
 from ..explain.tally import EXPECTED, Tally
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
@@ -204,6 +204,7 @@ class TableTally(Tally):
         if self.counts[LIKE] and not self.counts[UNLIKE]:
             most = f"all wraps are less than {LIKE_RADIANS[1]}°"
             lines.append(f"{most}; if they are in radians or turns, say so, as in wrap (rad).")
+        lines += [f"{PULL}."] if self.counts[PULL] else []
         bare = (x for x in MASSES if self.counts[x])
         lines += [f"{x} is in kg; for a weight give its unit, as {x} (N)." for x in bare]
         lines += [f"first error, in {self.first_error}"] if errors else []
@@ -311,6 +312,7 @@ def _hints(
     if any(x.read.terms for x in masses) or any(shared[x].unit.terms for x in MASSES):
         bare = (heading.name for heading in masses if not heading.unit)
         hints |= {x: cells[x].cast(pl.Float64, strict=False).count() for x in bare}
+        hints[PULL] = shared["M"].number != inf
     return hints
 
 

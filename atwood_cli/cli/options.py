@@ -249,7 +249,7 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     suffix = os.path.splitext(file)[1].lower()
     if suffix and suffix not in forms:
         way = "; add --markdown for .md" if options.get("explain") and ".txt" in forms else ""
-        if suffix in (".tex", ".docx") and "markdown" in options:
+        if suffix in PANDOC and "markdown" in options:
             md = shlex.quote(f"{os.path.splitext(file)[0]}.md")
             way = f"; write {md} by --markdown, then run pandoc {md} -o {shlex.quote(file)}"
         raise SceneError("output", file, f"must end in {' or '.join(forms)}{way}")
@@ -257,6 +257,8 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
 
 
 OUTPUT = results(*FORMS)
+PANDOC = (".docx", ".html", ".odt", ".pdf", ".rtf", ".tex")
+"""Files that pandoc writes of Markdown."""
 
 
 def _read_picture(options: Mapping[str, Any]) -> Picture | None:

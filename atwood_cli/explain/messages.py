@@ -339,6 +339,12 @@ def _on_what_is_found(answers: Answers) -> Iterator[str]:
         yield f"`drive_force` is {down} N if `m2` descends, and {up} N if it rises, {friction}."
 
 
+PULL = (
+    "a pull by hand is not a hanging weight: the tension there is the pull itself, and the acceleration and"
+    " the other tension differ"
+)
+
+
 def on_units(answers: Answers) -> list[str]:
     """Say of numbers without a unit what they may have been meant to be: radians, turns, or a weight."""
     scene, wrap, sentences = answers.decided.scene, answers.decided.scene.wrap, []
@@ -351,9 +357,7 @@ def on_units(answers: Answers) -> list[str]:
         if scene.own(x):
             sentences.append(f"`{x}` is a mass of {as_given(answers, x)}; for a weight give its unit.")
     if any(map(scene.own, weights)) and answers["acceleration"] != 0:
-        others = "other results" if scene.motion.finds else "`acceleration` and the other tension"
-        pull = "A pull by hand is not a hanging weight: the tension there is then the pull itself"
-        sentences.append(f"{pull}, and {others} differ.")
+        sentences.append(f"{PULL[0].upper()}{PULL[1:]}.")
     return sentences
 
 

@@ -85,7 +85,7 @@ def columns_of(
         raise Unreadable(f"tables stand side by side, with {listed(twice)} in each; put one below the other")
     headings = read_headings(sheet.columns, VOCABULARY, labels, named)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
-    numbers = [] if 0 in places else _numbers_of_rows(sheet)
+    numbers = [] if 0 in places or not sheet.columns else _numbers_of_rows(sheet)
     known = {*places, 0} if numbers else {*places}
     unread = {  # columns of numbers, by their places: the heading, and the first number
         place: (column, cell)
