@@ -63,7 +63,7 @@ class Solution(Generic[T]):
     Forces are on the pulley, with x from the axle to the place where m1's string meets it, and y up.
     Accelerations, torque and angles are positive when m2 descends. The quantities, with their units, which
     ``atwood_cli.QUANTITIES[name].unit`` gives, too, and the paper's equations; those from
-    ``{MEASURED_NAMES[0]}`` on follow from ``a`` or ``drop``, else are None:
+    ``{MEASURED_NAMES[0]}`` on follow from a measured motion, else are None, as those that are inputs:
 
 {_described()}
     """

@@ -502,7 +502,7 @@ def test_in_python_it_is_what_json_has() -> None:
 @pytest.mark.parametrize(
     ("table", "more", "kind", "words"),
     [
-        ({}, {}, ValueError, "cannot read the runs: runs need m1, m2, and a, or t with the height of fall, drop; there are none"),
+        ({}, {}, ValueError, "cannot read the runs: runs need m1, m2, and a, or t with the height of fall, drop; there are none; m1, m2, t, drop are missing"),
         (3, {}, ValueError, "cannot read the runs: it is of type int; give a path, a mapping or a data frame"),
         ({"m1": [1], "m2": [2, 3]}, {}, ValueError, "cannot read the runs: its columns differ in length: 'm1' has 1 cells, 'm2' has 2 cells"),
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),

@@ -151,7 +151,7 @@ MISSING_MASS = "is missing; give both masses, m1 and m2"
 
 
 class SceneError(ValueError):
-    """An error of an input: the ``parameter``, its ``value`` as given, and the ``rule`` that it breaks.
+    """An error of an input: the ``parameter``, its ``value`` as given (None for an array), and its ``rule``.
 
     ``fault`` names it among the statuses of arrays, as inputs do that are outside their domain or missing.
     """
