@@ -356,7 +356,7 @@ def on_units(answers: Answers) -> list[str]:
     for x in bare if weights else ():
         if scene.own(x):
             sentences.append(f"`{x}` is a mass of {as_given(answers, x)}; for a weight give its unit.")
-    if any(map(scene.own, weights)) and answers["acceleration"] != 0:
+    if any(map(scene.own, weights)) and not scene.lacking and answers["acceleration"] != 0:
         sentences.append(f"{PULL[0].upper()}{PULL[1:]}.")
     return sentences
 
