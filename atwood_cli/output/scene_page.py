@@ -62,6 +62,7 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
     """
     sentences = [f"{name}: {why}." for name, why in answers.decided.assumptions.items() if name in names]
     sentences += [quantity_in_words(answers, name) for name in names if values and answers.uncertainty(name)]
+    sentences += [f"{name} is in {answers.unit_of(name)}." for name in answers.units]
     sentences += map(unmarked, remarks(answers.to_six_digits))
     return sentences + reasons(answers, names or answers.names)
 
