@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, over
 from .explain.messages import notes
 from .numbers.digits import SHOWN_DIGITS
 from .numbers.text import nearest
-from .reading.answers import read_answers
 from .reading.inputs import read_digits
 from .reading.names import input_meant
+from .reading.scenes import read_answers
 from .solver.answers import Answers
 from .solver.quantities import MEASURED_NAMES, QUANTITIES, STANDARD, Regime
 from .solver.scene import Given, Scene

@@ -17,7 +17,7 @@ import polars as pl
 import pytest
 
 from atwood_cli import SceneError, fit, solve, solve_arrays, solve_table
-from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.scenes import read_answers
 
 from .conftest import many
 from .tools import oracle

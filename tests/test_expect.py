@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli.explain.conditions import failure, read_condition
-from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.scenes import read_answers
 from atwood_cli.solver.quantities import QUANTITIES
 from atwood_cli.solver.scene import SceneError
 

@@ -17,7 +17,7 @@ from atwood_cli.explain.equations import Derivation, Equation
 from atwood_cli.explain.given import inputs_in_words
 from atwood_cli.numbers.digits import is_infinite
 from atwood_cli.output.typeset import as_lines, as_markdown, chain, written
-from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.scenes import read_answers
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES, QUANTITIES
 from atwood_cli.solver.scene import INPUTS, MASSES, Scene
@@ -171,7 +171,7 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     }
     known |= {"f_axle": decided.axle_friction}
     for x, terms in scene.terms:
-        known[f"{terms.symbol}{x[1:] if x in MASSES else ''}"] = scene.number_of(x) * (
+        known[f"{terms.symbol}{x[1:] if x in MASSES else ''}"] = scene.as_given(x) * (
             decided.heavier_side if x == "a" else 1
         )
     env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}

@@ -12,7 +12,7 @@ import pytest
 
 from atwood_cli import Solution
 from atwood_cli.output.typeset import IN_LATEX
-from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.scenes import read_answers
 from atwood_cli.reading.units import UNITS, dimension_of
 from atwood_cli.solver import quantities
 from atwood_cli.solver.machine import Machine

@@ -10,7 +10,7 @@ from typing import Any
 import flint
 import pytest
 
-from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.scenes import read_answers
 from atwood_cli.solver import physics
 
 from .conftest import many

@@ -16,7 +16,7 @@ from atwood_cli import solve, solve_arrays
 from atwood_cli.explain.contact import contact
 from atwood_cli.numbers.digits import to_digits
 from atwood_cli.numbers.settling import is_positive, settle
-from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.scenes import read_answers
 from atwood_cli.solver.answers import Answers
 
 from .tools.scenes import read_scene

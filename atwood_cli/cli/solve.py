@@ -9,9 +9,9 @@ from ..explain.messages import reasons
 from ..output.forms import Destination, Picture, Report, show
 from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_steps, print_table, record
 from ..output.text import cell, say
-from ..reading.answers import read_answers
 from ..reading.inputs import read_digits
 from ..reading.names import read_results
+from ..reading.scenes import read_answers
 from ..solver.quantities import FROM_MOTION, MEASURED_NAMES, NAMES
 from ..solver.scene import FALL, FINDABLE, INPUTS, SceneError
 from .options import (

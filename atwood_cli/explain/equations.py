@@ -106,9 +106,9 @@ class Derivation:
         """Return what is given or found, by symbol."""
         decided, scene, motion = self.decided, self.scene, self.decided.motion
         terms = {
-            WEIGHTS.get(x, kind.symbol): scene.number_of(x) * decided.heavier_side
+            WEIGHTS.get(x, kind.symbol): scene.as_given(x) * decided.heavier_side
             if x == "a"
-            else abs(scene.number_of(x))
+            else abs(scene.as_given(x))
             for x, kind in scene.terms
         }
         return {

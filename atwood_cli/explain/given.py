@@ -31,7 +31,7 @@ def terms_record(scene: Scene, round_: Rounding[Any] = to_double) -> dict[str, o
 
 def _as_given(scene: Scene, name: str, round_: Rounding[Any]) -> object:
     """Return the number given for an input, as text with its unit if this is not the usual one."""
-    number, unit = _rounded(scene.number_of(name), round_), scene.unit_of(name)
+    number, unit = _rounded(scene.as_given(name), round_), scene.unit_of(name)
     if number is None or unit == parameter_of(name).unit:
         return number
     return f"{format_number(number)}{'' if unit == 'rad' else ' '}{unit}"
@@ -55,14 +55,14 @@ def label(x: str, terms: Terms | None) -> str:
 def inputs_in_words(answers: Answers) -> dict[str, str]:
     """Say each input, as m1 = 1 kg or W1 = 20 N."""
     scene = answers.decided.scene
-    given = [x for x in (*INPUTS, *MEASURED) if scene.number_of(x) is not None and x != scene.motion.finds]
+    given = [x for x in (*INPUTS, *MEASURED) if scene.as_given(x) is not None and x != scene.motion.finds]
     return {x: f"{label(x, dict(scene.terms).get(x))} = {as_given(answers, x)}" for x in given}
 
 
 def as_given(answers: Answers, x: str) -> str:
     """Say the number given for an input, with at least as many decimals as its uncertainty: 3.00 ± 0.02."""
     typed, scene = answers.typed(x), answers.decided.scene
-    if (number := scene.number_of(x)) == inf:
+    if (number := scene.as_given(x)) == inf:
         return "inf"
     words = typed.quotient or as_typed(number / typed.unit.size)
     if typed.uncertainty:

@@ -164,7 +164,7 @@ def _at_ends(fit: Fitted) -> Iterator[list[dict[str, float]]]:
     runs, shared = fit.runs, fit.shared
     for x, typed in shared.inputs.items():
         if u := typed.uncertainty:
-            size = shared.scene.number_of(x)
+            size = shared.scene.as_given(x)
             if not parameter_of(x).may_be_zero and u >= size:
                 raise SceneError(x, typed.given, REACHES_0)
             scenes = [shared.scene.with_number(x, end) for end in (size - u, size + u)]

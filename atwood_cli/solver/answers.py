@@ -101,7 +101,7 @@ class Answers:
     def names(self) -> tuple[str, ...]:
         """The quantities that every scene has, then those that follow from measurements."""
         motion = self.decided.motion
-        fall = FROM_MOTION["fall"][motion.drop is not None :] if motion.fall else ()
+        fall = (x for x in FROM_MOTION["fall"] if motion.fall and (x != "drop" or motion.drop is None))
         return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *fall)
 
     def __getitem__(self, name: str) -> Any:

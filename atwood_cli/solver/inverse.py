@@ -156,7 +156,7 @@ def _impossible(scene: Scene) -> str:
 def found_inputs(scene: Scene) -> dict[str, Any]:
     """Return the input that follows from a motion, by its name; it may be below 0. Raises Undetermined.
 
-    Kinetic friction is no rational number: the machine computes it.
+    The machine computes kinetic friction, which is no rational number, and the drive, which is no input.
     """
     m1, m2, g, finds = scene.m1, scene.m2, scene.g, scene.motion.finds
     if finds is None:
@@ -182,4 +182,5 @@ def found_inputs(scene: Scene) -> dict[str, Any]:
         raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass; {IF_IT_SLOWS_DOWN}")
     if finds == "M":
         return {finds: physics.rim_mass(l, h, a, g, b) / decided.beta}
+    assert finds in ("g", "mu_k", DRIVE), finds  # the machine computes the others
     return {finds: physics.gravity(l, h, c, a, f)} if finds == "g" else {}

@@ -390,7 +390,7 @@ class Scene(NamedTuple):
         return [mass for mass in MASSES if getattr(self, mass) is None]
 
     def own(self, x: str) -> Any:
-        """Return an input, or what was measured, in its own terms."""
+        """Return an input, or what was measured, in its own terms: the mass of a weight that was given."""
         return getattr(self if x in INPUTS else self.motion, x)
 
     def unit_of(self, x: str) -> str:
@@ -398,8 +398,8 @@ class Scene(NamedTuple):
         terms = dict(self.terms).get(x)
         return terms.unit if terms else self.wrap.unit if x == "wrap" else parameter_of(x).unit
 
-    def number_of(self, x: str) -> Any:
-        """Return the number given for an input, in that unit."""
+    def as_given(self, x: str) -> Any:
+        """Return the number given for an input, in that unit: the weight."""
         return self.wrap.number if x == "wrap" else self.in_terms_of(x, self.own(x))
 
     def in_terms_of(self, x: str, own: Any) -> Any:
@@ -417,7 +417,7 @@ class Scene(NamedTuple):
         values, terms = {x: number}, dict(self.terms)
         if terms:
             by = {kind.by: getattr(self, kind.by) for kind in terms.values()}
-            values = in_own_terms(by | {name: self.number_of(name) for name in terms} | values, terms)
+            values = in_own_terms(by | {name: self.as_given(name) for name in terms} | values, terms)
         if measured := {name: values.pop(name) for name in MEASURED if name in values}:
             values["motion"] = self.motion._replace(**measured)
         return self._replace(**values)

@@ -78,11 +78,11 @@ class UncertainAnswers(Answers):
     def _end(self, x: str, step: Fraction) -> End:
         """Solve with an input so much more, kept to the rules of `Scene.of`; what is found may be below 0."""
         scene = self.decided.scene
-        number: Fraction = scene.number_of(x) + step
+        number: Fraction = scene.as_given(x) + step
         if x == "mu_k" and scene.mu is not None:
             number = min(number, scene.mu)
         if x != "a":
-            number = max(number, Fraction(0)) if scene.number_of(x) >= 0 else min(number, Fraction(0))
+            number = max(number, Fraction(0)) if scene.as_given(x) >= 0 else min(number, Fraction(0))
             may_be_zero = parameter_of(x).may_be_zero and (x != "M" or scene.I is None)
             if not (number or may_be_zero):
                 return End(number, None, NO_SCENE)

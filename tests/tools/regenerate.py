@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 from atwood_cli.cli import COMMANDS
 from atwood_cli.cli.solve import implied
-from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.names import read_names
+from atwood_cli.reading.scenes import read_answers
 from atwood_cli.solver.quantities import QUANTITIES
 from atwood_cli.solver.scene import INPUTS, MEASURED, SceneError
 
