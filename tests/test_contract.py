@@ -59,7 +59,7 @@ PYTHON: dict[str, tuple[Iterable[str], str]] = {
     "solve_table": (parameters(solve_table), "table quantities?"),
     "fit": (
         parameters(fit),
-        "runs * drop? m1? m2? hanger? g? M? inertia? I? R? axle? find? without=() sheet?",
+        "runs * drop? m1? m2? hanger? g? M? inertia? I? R? axle? find? without=() columns? sheet?",
     ),
     "Solution": ([one.name for one in fields(Solution)], f"scene notes regime {VALUES} uncertainty"),
     "Scene": (Scene._fields, f"{SCENE} motion terms"),

@@ -4,9 +4,12 @@ How a table by words of its own is read, and which are refused, stands in `cases
 """
 
 import gzip
+import json
 import re
+import shlex
 from datetime import timedelta
 from fractions import Fraction
+from itertools import pairwise
 from math import nan
 from pathlib import Path
 from random import Random
@@ -23,10 +26,11 @@ from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.quantities import NAMES
 from atwood_cli.solver.scene import INPUTS, Unit
 from atwood_cli.tables import cells, headings, sheets, sources
+from atwood_cli.tables.places import NotUnderstood
 from atwood_cli.tables.sources import Unreadable
 
 from .conftest import many
-from .tools.running import Batch
+from .tools.running import Batch, called
 
 # Headings and cells: the grammar that `fit` and `batch` share
 
@@ -66,14 +70,13 @@ def test_the_grammar_of_headings(want: str, heading: str) -> None:
 
 @pytest.mark.parametrize("columns", ["m1|m_1", "t1|time 1", "m1 (s)", "a|Team|±", "m1|a_err", "a|±|u(a)", "mu (g)", "wrap (kg)"])  # fmt: skip
 def test_a_column_that_is_refused_may_pass_as_a_label(columns: str) -> None:
-    """Its last could be two things, or has a wrong unit; `cases/fit.md` and `cases/batch.md` have the sentences."""
+    """Its last could be two things, or has a wrong unit; `ASKED` has the sentences."""
     *others, last = columns.split("|")
     vocabulary = SCENES if last.startswith(("mu", "wrap")) else VOCABULARY
-    words = f"(; rename it|; --label '?{re.escape(last)}'? leaves it unread)$"
-    with pytest.raises(Unreadable) as refused:
+    with pytest.raises(Unreadable, match=re.escape(repr(last))):
         headings.read_headings([*others, last], vocabulary)
-    assert re.search(words, f"{refused.value}{refused.value.options}")
-    assert last not in [one.column for one in headings.read_headings([*others, last], vocabulary, [last])]
+    said = headings.Naming(labels=[last]).of([*others, last])
+    assert last not in [one.column for one in headings.read_headings([*others, last], vocabulary, said)]
 
 
 DOUBTFUL = """
@@ -129,9 +132,9 @@ BELOW = "units in the row below the headings"
 def read(tmp_path: Path) -> Any:
     """The runs of a text."""
 
-    def call(table: str | bytes, name: str = "runs.csv", **named: str) -> Runs:
+    def call(table: str | bytes, name: str = "runs.csv", words: str = "") -> Runs:
         (tmp_path / name).write_bytes(table if isinstance(table, bytes) else table.encode())
-        return read_runs(tmp_path / name, given={"drop": DROP}, named=named)
+        return read_runs(tmp_path / name, headings.read_naming(words, (), (), VOCABULARY), {"drop": DROP})
 
     return call
 
@@ -189,7 +192,7 @@ UNIT_OF_M1 = "'m1 (kg)' as m1 in kg; 'm2' in kg, 'time' in s, as no unit is give
         (TABLE.replace("m1", '"m1\n(kg)"'), UNIT_OF_M1),
         (TABLE.encode("utf-16"), ""),  # as Excel saves "Unicode text"
         (b"\xfe\xff" + TABLE.replace(",", "\t").encode("utf-16-be"), ""),
-        ("m1,m2,time,mean\n.2,.207,3.99,4\n.201,.206,5.02,5\n", "'mean' as a label"),
+        ("m1,m2,time,mean\n.2,.207,3.99,4\n.201,.206,5.02,5\n", "not read: 'mean'"),
         (TABLE.replace("0.2,", "0.2kg,").replace("0.206", "206 g"), ""),
     ],
 )
@@ -197,7 +200,8 @@ def test_what_stands_around_a_table(read: Any, table: str | bytes, remark: str) 
     runs = read(table)
     assert numbers(runs) == exactly("0.2 0.207 3.99 0 0 0", "0.201 0.206 5.02 0 0 0")
     assert runs.rows == [[1], [2]]
-    assert runs.remarks == ([f"read as: {remark}."] if remark else [])
+    said = remark if remark.startswith("not read") else f"read as: {remark}"
+    assert runs.remarks == ([f"{said}."] if remark else [])
 
 
 def test_the_step_of_readings_is_that_of_the_last_digit(read: Any) -> None:
@@ -214,15 +218,171 @@ UNCERTAIN = "error|u|± a|σ|Uncertainty (s)|SD|std dev (s)|dt (s)|Unsicherheit 
     ("content", "words"),
     [
         ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", ": make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
-        ("n,mass one (g),Zeit (s),mass two (g)\n1,2,3,4\n", "; give --column 'm1=mass one (g)' --column 'm2=mass two (g)' --column 't=Zeit (s)'"),
-        ("m1,m2,t,F (N),SD,Fall t (s),dt (s)\n1,2,3,4,5,6,7\n", "columns 'SD', 'dt (s)' could be an uncertainty; name what of"),
-        *((f"m1,m2,t,{column}\n1,2,3,4\n", f"column '{column}' could be an uncertainty") for column in UNCERTAIN),
+        ("m1,m2,t\n.2,.21,3\nm1,m2,t\n.2,.22,2\n", "row 2 has headings of a second table; give it a file of its own"),
+        ("m1,m2,t\n.2,.21,3\n,.22,2\n", "row 2: m1 is missing; write it in each row, or fill by m1+ in columns"),
+        *((f"m1,m2,t,{column}\n1,2,3,4\n", f"'{column}' may matter, and is not read") for column in UNCERTAIN),
     ],
 )  # fmt: skip
 def test_files_that_are_refused_with_a_sentence(read: Any, content: str, words: str) -> None:
     with pytest.raises(Unreadable) as refused:
         read(content)
-    assert words in f"{refused.value}{refused.value.options}"
+    assert words in str(refused.value)
+
+
+ASKED = [
+    ("batch --only a", "m1,m2,D (mm)\n1,3,500\n", "column 'D (mm)' may mean diameter (twice R)", "m1,m2,?"),
+    ("batch --only regime", "a,b\n1,2\n", "m1 and m2 are missing", "-,?"),
+    ("batch --only regime", "m1;m3\n1;2\n", "m2 is missing", "m1,?"),
+    ("batch --only regime", "m1,m2,m2 (g)\n1,2,3\n", "column 'm2 (g)' holds m2, as 'm2' does; read one", "m1,m2,?"),
+    ("batch --only regime", "m1,m2,m1\n1,2,3\n", "column 'm1' holds m1, as another of that heading does; read one", "m1,m2,?"),
+    ("batch", "m1 (g),m2 (g),Δm (g)\n100,105,5\n", "column 'Δm (g)' may mean M (mass of the pulley)", "m1:g,m2:g,?"),
+    ("batch", "m1,m2,Moment of inertia (g cm2)\n1,3,7\n", "column 'Moment of inertia (g cm2)' may mean I (moment of inertia of the pulley)", "m1,m2,?"),
+    ("batch", "m1,m2,M (cm)\n1,3,7\n", "column 'M (cm)' has the unit 'cm'; it takes kg, g, mg, ug, t, Mg, lb, lbs, oz, st, slug, N, mN, daN, kN, lbf, kip, kgf", "m1,m2,?"),
+    ("batch", "m1,m2,mu (kg)\n1,3,7\n", "column 'mu (kg)' must hold plain numbers, without the 'kg'", "m1,m2,?"),
+    ("batch --only a --label M_", "m1,m2,M\n1,3,10\n", "there is no column 'M_'; there are 'm1', 'm2', 'M'", "m1,m2,M"),
+    ("batch --only a --column M=Rolle", "m1,m2,M,Rolle\n1,3,10,20\n", "column 'Rolle' holds M, as 'M' does; read one", "m1,m2,M,?"),
+    ("batch --only a", "\"Mass\n(kg)\",m1,m2\n5,1,3\n", "column 'Mass (kg)' may mean M (mass of the pulley)", "?,m1,m2"),
+    ("fit --drop 1", "m1,m2,t1,t2,t3,t\n1,2,3,4,5,4\n", "column 't' stands beside 't1', and one may be computed, as a mean is", "m1,m2,t1,t2,t3,?"),
+    ("fit", "Masse 1;Masse 2;Zeit\n0,2;0,207;3,99\n", "a (or t and drop) is missing", "m1,m2,?|drop"),
+    ("fit", "m1 (g);Masse 2 (g);t\n200;207,5;3,99\n", "drop is missing", "m1:g,m2:g,t|drop"),
+    ("fit", "0.2,0.207,3.99\n0.21,0.22,4\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing", "?,?,?|drop"),
+    ("fit", "m1,m2,a,m_1\n1,2,3,4\n", "column 'm_1' holds m1, as 'm1' does; read one", "m1,m2,a,?"),
+    ("fit", "m1,m2,t1,time 1\n1,2,3,4\n", "column 'time 1' holds time, as 't1' does; are they repeats?", "m1,m2,t1,?|drop"),
+    ("fit", "m1,m2,a,Δm\n1,2,3,4\n", "'Δm' may matter, and is not read", "m1,m2,a,?"),
+    ("fit", "m1,m2,a,t_err\n1,2,3,4\n", "column 't_err' could be an uncertainty, but no column is what it would be of", "m1,m2,a,?"),
+    ("fit", "m1,m2,a,±,u(a)\n1,2,3,4,5\n", "column 'u(a)' is a second uncertainty of a", "m1,m2,a,a_err,?"),
+    ("fit --drop 1m --column 't=Tempo (furlong/h)'", "m1,m2,Tempo (furlong/h)\n1,2,3\n", "column 'Tempo (furlong/h)' has the unit 'furlong/h'; it takes s, ms, us, min, h", "m1,m2,?"),
+    ("fit --drop 1m --column 't=Weg (cm)'", "m1,m2,Weg (cm)\n1,2,3\n", "column 'Weg (cm)' has the unit 'cm'; it takes s, ms, us, min, h", "m1,m2,?"),
+    ("fit --drop 1", "m1,m2,t,u(t) (zz)\n1,2,3,4\n", "column 'u(t) (zz)' has the unit 'zz'; it takes s, ms, us, min, h", "m1,m2,t,?"),
+    ("fit", "m1,m2,a,mu\n1,2,3,0.3\n", "'mu' may matter, and is not read", "m1,m2,a,?"),
+    ("fit --drop 1m", "m1 (N),u(m1) (g),m2,t\n1,1,1,1\n", "column 'u(m1) (g)' has another kind of unit than 'm1 (N)'", "m1:N,?,m2,t"),
+    ("fit --drop 50cm", "m1;m2;m3;t\n0,09 kg;0,09 kg;0,02 kg;1,1\n0,09 kg;0,09 kg;0,03 kg;0,9\n", "'m3' may matter, and is not read", "m1,m2,?,t"),
+    ("fit --drop 1m", "m1 (g),m2 (g),Hanger (g),t\n100,110,5,2.2\n100,120,5,1.6\n", "'Hanger (g)' may matter, and is not read", "m1:g,m2:g,?,t"),
+    ("fit", "M1+M2 (g),M1-M2 (g),a (m/s^2)\n115,5,0.380\n125,5,0.354\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,a:m/s2"),
+    ("fit", "Mass A (g),Mass B (g),Total mass (g),a\n55,60,115,0.380\n60,65,125,0.354\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,?,a"),
+    ("fit", "m1 (g),m2 (g),Total mass (g),a\n55,60,115,0.380\n60,65,125,0.354\n", "'Total mass (g)' may matter, and is not read", "m1:g,m2:g,?,a"),
+    ("fit", "M1(g);M2(g);Beschleunigung\n12;20;2,2 m/s2\n20;30;1,5\n30;40;1,1\n", "a (or t and drop) is missing", "m1:g,m2:g,a:m/s2"),
+    ("fit --column t=Zeit", "Masse 1;Masse 2;Höhe (cm);Zeit\n1;2;3;4\n", "drop is missing", "m1,m2,drop:cm,t1"),
+    ("fit", "Höhe (cm),links (g),rechts (g),Zeit (s)\n1,2,3,4\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing", "drop:cm,?,?,t:s"),
+    ("fit", "m1,m2,a theo (cm/s²),a exp (cm/s²)\n1,2,3,4\n", "a (or t and drop) is missing", "m1,m2,a:cm/s2?,a:cm/s2?"),
+    ("fit", "m1,m2,a_measured\n1,2,3\n", "a (or t and drop) is missing", "m1,m2,?|drop"),
+    ("fit --drop 1m", "M (g),m (g),t\n100,110,2.5\n", "m1 (0 if nothing hangs there), m2 are missing", "M:g,?,t"),
+    ("fit --drop 1m", "m1,m2,Mean (s),Trial 1 (s),Trial 2 (s)\n1,2,3,4,2\n", "a (or t and drop) is missing", "m1,m2,t:s?,t:s?,t:s?"),
+    ("fit --drop 1m", "m1,m2,Trial 1,Trial 2,Mean\n1,2,3,4,5\n", "a (or t and drop) is missing", "m1,m2,?,?,?"),
+    ("fit --drop 1m", "m1,m2,1st trial,2nd trial,Mean\n1,2,3,4,5\n", "a (or t and drop) is missing", "m1,m2,?,?,?"),
+    ("fit", "m1,m2,h (cm),v (m/s)\n1,2,3,4\n", "a (or t and drop) is missing", "m1,m2,drop:cm,?"),
+    ("fit", "Beban : 0,09 kg;;;\nr : 0,06 m;;;\nMasa 1 (kg);Masa 2 (kg);Jarak (m);Waktu (s)\n0,09;0,10;0,4;1,5\n", "a (or t and drop) is missing", "m1:kg,m2:kg,drop:m,t:s"),
+    ("fit", "Plan A;;;\nlinks;rechts;Weg;Zeit\n0,09;0,10;0,4;1,5\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing", "?,?,?,?|drop"),
+    ("fit --drop 1", "m1,m2,t,,m1,m2,t\n1,2,3,,1,3,2\n", "column 'm1' holds m1, as another of that heading does; read one", "m1,m2,t,-,?,?,?"),
+    ("batch", "m1 (g),m2 (g),m3 (g)\n500,510,50\n", "column 'm3 (g)' may mean M (mass of the pulley)", "m1:g,m2:g,?"),
+    ("fit --drop 0.5", "m1 (g),m2 (g),t,Δm (g)\n200,220,1.72,20\n", "'Δm (g)' may matter, and is not read", "m1:g,m2:g,t,?"),
+    ("batch --only a", "m1 (g),m2 (g),dm (g),∆m (g),x\n500,510,10,10,7\n", "column 'dm (g)' may mean M (mass of the pulley)", "m1:g,m2:g,?,?"),
+    ("fit --drop 0.5", "m1 (g),m2 (g),t 1st,t 2nd,t\n200,220,1.7,1.74,1.72\n", "column 't' stands beside 't 1st', and one may be computed, as a mean is", "m1:g,m2:g,t1,t2,?"),
+    ("fit --drop 1m", "Wurf;0,02;0,03\n1;1,4;1,2\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing; if headings that are numbers are loads, read the column of one, and give its load", "-,?,?"),
+    ("fit --m1 0 --m2 50g --drop 1m", "T (s),T (s)\n1,2\n", "column 'T (s)' holds time, as another of that heading does; are they repeats?", "t:s,?"),
+    ("fit --m1 0 --m2 50g --drop 1m --column 't=T(s)'", "T(s),T(s)\n1,2\n", "2 columns have the heading 'T(s)'", "t:s,?"),
+    ("batch", "m1,m2,Kąt [°]\n1,3,270\n", "column 'Kąt [°]' may mean wrap (angle over which the string touches the pulley)", "m1,m2,?"),
+]  # fmt: skip
+"""Tables that are not understood: why, and the words of --columns to type, with options that are missing behind them."""
+
+
+@pytest.mark.parametrize(("command", "table", "why", "typed"), ASKED)
+def test_what_is_not_understood_is_asked_once(command: str, table: str, why: str, typed: str) -> None:
+    """What is to be typed is no error, and where a word is open, the columns are listed again as they were."""
+    words, (columns, _, options) = shlex.split(command), typed.partition("|")
+    asked = called([words[0], "-", *words[1:]], table.encode())
+    why_asked, *listing, last = asked.err.splitlines()
+    assert why_asked.partition("; lines above")[0] == f"atwood: cannot read stdin: {why}"
+    to_type = shlex.split(last)[1:]
+    missing = [word[2:] for word, value in pairwise(to_type) if value == "?" and word != "--columns"]
+    assert (dict(pairwise(to_type)).get("--columns", ""), " ".join(missing)) == (columns, options)
+    again = called(to_type, table.encode())
+    assert again.status < 2
+    assert ("first cells" in again.err) == ("?" in columns or bool(options))
+    assert max(map(len, listing)) <= 80
+
+
+RIM, FRICTION = 0.03, 0.008  # kg, N
+LOADS = [("150", "165"), ("155", "185"), ("160", "200"), ("150", "190")]  # g
+
+
+def fall(m1: str, m2: str, height: float = 0.7, rim: float = RIM) -> float:
+    """The time of a fall from rest, by Newton's second law."""
+    light, heavy = float(m1) / 1000, float(m2) / 1000
+    return float(np.sqrt(2 * height * (heavy + light + rim) / (9.80665 * (heavy - light) - FRICTION)))
+
+
+TIMES = [[f"{fall(*load) + slip:.4f}" for slip in (-0.002, 0, 0.002)] for load in LOADS]
+RUNS = [*zip(LOADS, TIMES, strict=True)]
+FORMS = {
+    "R's headings, read at once": ("mass1.g,mass2.g,height.cm,time.s\n" + "".join(f"{a},{b},70,{t}\n" for (a, b), ts in RUNS for t in ts), ""),
+    "the same by place": ("mass1.g,mass2.g,height.cm,time.s\n" + "".join(f"{a},{b},70,{t}\n" for (a, b), ts in RUNS for t in ts), "--columns m1,m2:g,drop,t"),
+    "theory under the same heading": ("Lauf;links (g);rechts (g);a (m/s);±;a (m/s)\n" + "".join(f"{i};{a};{b};{1.4 / float(ts[1]) ** 2:.5f};9%;{i}\n" for i, ((a, b), ts) in enumerate(RUNS)), "--columns -,m1:g,m2:g,a:m/s2"),
+    "rows of means": ("essai,m1 (g),m2 (g),t (s)\n" + "".join(f"{i},{a},{b},{t}\n" for i, ((a, b), ts) in enumerate(RUNS) for t in ts) + "moyen.,150,165,9\n中央値,150,165,9\n", "--columns -,m1:g,m2:g,t --drop 0.7"),
+    "a column of means": ("Vikt 1 (g)\tVikt 2 (g)\tTid A\tTid B\tTid C\tmedel\n" + "".join(f"{a},{b},{','.join(ts)},9\n".replace(",", "\t") for (a, b), ts in RUNS), "--columns m1:g,m2:g,t,t,t --drop 70cm"),
+    "two rows of headings, and merged cells": ("Nr,Gewicht,,Fallweg,Zeit,,\n,A (g),B (g),(cm),1.,2.,3.\n" + "".join(f"{i},{a},{b},{'70' if i == 0 else ''},{','.join(ts)}\n" for i, ((a, b), ts) in enumerate(RUNS)), "--columns -,m1:g,m2:g,drop:cm+,t,t,t"),
+    "no headings": ("".join(f"{a};{b};{';'.join(ts)}\n".replace(".", ",") for (a, b), ts in RUNS), "--columns m1:g,m2:g,t,t,t --drop 70cm"),
+    "loads across, one of them read": ("h (cm) / F (cN),60,70\n" + "".join(f"{h},{fall('0', '60', h / 100):.4f},{fall('0', '70', h / 100):.4f}\n" for h in (20, 40, 60)), f"--columns drop:cm,-,t --m1 0 --m2 70g --axle {FRICTION}"),
+    "bodies under one heading": ("t (s),t (s)\n" + "".join(f"{fall('0', '90') + slip:.4f},{fall('0', '90', rim=0.2) + slip:.4f}\n" for slip in (-0.002, 0, 0.002)), f"--columns t --m1 0 --m2 90g --drop 0.7 --axle {FRICTION}"),
+}  # fmt: skip
+"""Tables as people keep them, and how they are read."""
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_tables_of_every_form_give_what_they_were_made_with(form: str) -> None:
+    table, options = FORMS[form]
+    options += "" if "drop" in options or "height" in table or "a:" in options else " --drop 70cm"
+    ran = called(["fit", "-", "--json", *shlex.split(options)], table.encode())
+    assert ran.status == 0, ran.err
+    results = json.loads(ran.out)
+    assert results["rim_mass"] == pytest.approx(RIM, abs=1e-3)
+    assert len(results["runs"]) == (3 if "across" in form else 1 if "bodies" in form else 4)
+
+
+def test_nothing_is_left_out_in_silence(read: Any) -> None:
+    """A label, a column to the right, rows of words, and a column that is a mean of the others."""
+    table = "Team,m1,m2,t1,t2,t3,Note\n1.5,1,2,3,5,4,7\n2.5,1,3,2,2.5,2.25,8\n3.5,1,4,1.9,2,1.95,9\nΣx,1,4,1,1,1,\n"
+    remarks = read(table).remarks
+    assert remarks[-2:] == [
+        "not read: 'Team', 'Note'.",
+        "row 4: not used, as 'Team' has a word there, and most rows a number.",
+    ]
+    assert read(table).doubts[-1].startswith("in each row t3 is the mean of the other repeats")
+    assert not any("is the mean" in doubt for doubt in read(table.replace("2.25", "2.24")).doubts)
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ("m1:g,m2:kg,t", "--columns does not fit: column 'm2 (g)' has the unit 'g', not 'kg'"),
+        ("m1,m1:g,t", "--columns does not fit: column 'm2 (g)' means m2, not m1"),
+        ("m1,m2,t:s", "--columns does not fit: column 't.ms' has the unit 'ms', not 's'"),
+        ("m1,m2,t,t,t", "--columns 'm1,m2,t,t,t' are 5 words, and the table has 4 columns"),
+        ("m1,m2,x", "--columns 'x' is no word for a column: m1, m2, drop, a, time, M, g, inertia, I, R, axle, or - for one that is not read"),
+        ("m1,m2,t:g", "--columns 't:g' has the unit 'g', of another quantity"),
+        ("m1,m2,t --column t=F", "--columns 'm1,m2,t' says what each column is; leave --column out"),
+    ],
+)  # fmt: skip
+def test_words_that_contradict_a_table_are_refused(words: str, why: str) -> None:
+    table = b"m1 (g),m2 (g),t.ms,F\n200,210,3000,1\n200,220,2000,1\n"
+    assert called(["fit", "-", "--drop", "1", "--columns", *words.split(" ")], table) == (
+        2,
+        "",
+        f"atwood: {why}\n",
+    )
+
+
+def test_ndjson_has_names() -> None:
+    why = "--columns takes columns in their order; those of NDJSON have names"
+    ran = called("batch - --from ndjson --columns m1,m2".split(), b'{"m1":1,"m2":2}\n')
+    assert ran == (2, "", f"atwood: {why}\n")
+
+
+def test_uncertainties_by_place(read: Any) -> None:
+    """One column for all repeats, or one behind each; an uncertainty in the heading stays."""
+    text = "A (±1 g),B,,,,\n200,210,3,0.1,4,0.2\n"
+    for words, second in (("t,t_err,t,t_err", 0.2), ("t,t_err,t", 0.1), ("t,+/-,t,u(t2)", 0.2)):
+        assert numbers(read(text, words=f"m1:g,m2:g,{words}"))[0][4:] == [0.001, 0, 0.1, second]
 
 
 CALLED = {"m1": "m1|M1|mass 1|Masse_1|Größere Masse (m)|Масса груза|Wagen (A)", "drop": "drop|h|Fallhöhe|Weg (h)|альтитуда", "t": "t|Time|Zeit (t)|temps|t mean"}  # fmt: skip
@@ -244,9 +404,9 @@ def test_no_heading_changes_a_result_without_a_word(tmp_path: Path) -> None:
             if rng.random() < 0.7:
                 named[column] = name
         try:
-            runs = read_runs(columns, named=named)
+            runs = read_runs(columns, headings.Naming(named=named))
         except Unreadable as refused:
-            ways.add("--" in refused.options)
+            ways.add(isinstance(refused, NotUnderstood))
             continue
         clauses = runs.remarks[0].split("; ")  # the last may have the columns without a unit
         said = clauses[-1] if "as no unit is given" in clauses[-1] else ""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..numbers.text import in_quotes
 from ..solver.scene import SceneError
-from ..tables.headings import Heading, units_in
+from ..tables.headings import UNREAD, Heading, Naming, units_in
 from ..tables.records import GoesOn, find_header, records_of, wrong_width
 from ..tables.sources import Unreadable, whole_lines
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 MOST_LINES = 50
 """The most lines of a cell: a note has fewer. A quotation mark that is left open would swallow rows."""
+ROWS_SHOWN = 3
 UNREADABLE = "unreadable"
 """The member that has the text of a line of NDJSON that cannot be read."""
 BYTE_ORDER_MARK = "\ufeff"
@@ -51,11 +52,13 @@ class Csv:
     bulk. Elsewhere Python's `csv` splits them, and is strict about quotation marks.
     """
 
-    def __init__(self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]]):
-        """Read the header, by its ``known`` columns. The rows ``above`` it are left out."""
+    def __init__(
+        self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]], naming: Naming
+    ):
+        """Read the header, by its ``known`` columns or by place. The rows ``above`` it are left out."""
         self.remarks: list[str] = []
         self._texts = map(bytes.decode, whole_lines(blocks, True, self.remarks))
-        self._rest = self._whole("", partial(self._below_header, known))
+        self._rest = self._whole("", partial(self._below_header, known, naming))
 
     def pieces(self, headings: Sequence[Heading]) -> Iterator[Piece]:
         """Yield the records below the header. Raises Unreadable."""
@@ -78,18 +81,28 @@ class Csv:
                     raise
                 text += more
 
-    def _below_header(self, known: Callable[[Sequence[str]], Collection[str]], text: str) -> str:
+    def _below_header(
+        self, known: Callable[[Sequence[str]], Collection[str]], naming: Naming, text: str
+    ) -> str:
         """Read the header, and return the text below it. Raises Unreadable, GoesOn."""
         mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
         text = text.removeprefix(BYTE_ORDER_MARK)
-        _, self.separator, self.above = find_header(text, known)
-        rows = (row for row in records_of(text, self.separator) if any(row[2]))
-        line, header, self.columns = next(islice(rows, self.above, None), (1, "", []))
-        if not header:
+        if not text.strip():
             raise GoesOn("it is empty")
+        layout = find_header(text, known, naming.decisive)
+        self.separator, self.above = layout.separator, layout.above
+        first = layout.above + layout.heads
+        records = [*islice((x for x in records_of(text, self.separator) if any(x[2])), first + ROWS_SHOWN)]
+        rows = [cells for *_, cells in records]
+        width = max(map(len, rows[layout.above : first] or rows[first:]))
+        self.columns = layout.headings(rows, width)
+        self.first_rows = [[*row, *[""] * width][:width] for row in rows[first:]]
+        line, header, _ = records[first - 1] if first else (1, "", [])
         self._line = line + header.count("\n")
-        self.header = mark + header.rstrip("\r\n")
-        self.line_end = "\r\n" if header.endswith("\r\n") else "\n"
+        self.line_end = "\r\n" if records[max(first - 1, 0)][1].endswith("\r\n") else "\n"
+        if not layout.heads and naming.decisive:
+            self.columns = ["" if word == UNREAD else word for word in naming.of(self.columns)]
+        self.header = mark + (header.rstrip("\r\n") if layout.heads == 1 else self._written(self.columns))
         return text.split("\n", line - 1)[-1].removeprefix(header)
 
     def _in_bulk(self, text: str, headings: Sequence[Heading]) -> Piece | None:

@@ -15,6 +15,7 @@ from contextlib import (
     suppress,
 )
 from decimal import Decimal
+from functools import partial
 from io import BytesIO, StringIO, TextIOWrapper
 from itertools import chain, islice, takewhile
 from pathlib import Path
@@ -30,10 +31,10 @@ from ..solver.quantities import QUANTITIES
 from ..solver.scene import SceneError
 from ..tables.cells import decimal_commas_in
 from ..tables.headings import ABOVE, Heading, listed, read_as, recognised
-from ..tables.sources import Unreadable, blocks_of, cannot_read, is_packed, is_stream
+from ..tables.sources import Unreadable, blocks_of, is_packed, is_stream
 from ..tables.workbooks import opened_table
 from .frames import check_polars, with_results
-from .pieces import Csv, Piece, read_ndjson
+from .pieces import ROWS_SHOWN, Csv, Piece, read_ndjson
 from .solving import ERROR, VOCABULARY, ReadColumns, TableTally, Wanted, read_columns, solve_cells
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class Job(NamedTuple):
 
 
 def run_batch(job: Job, tally: TableTally) -> list[str]:
-    """Solve a table of scenes. Returns sentences on how it was read. Raises OSError."""
+    """Solve a table of scenes. Returns sentences on how it was read. Raises OSError, Unreadable."""
     check_polars()
     # As polars is imported, it takes Ctrl-C: a pipe would be waited for, and an interrupt raised twice.
     signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
@@ -76,7 +77,8 @@ def run_batch(job: Job, tally: TableTally) -> list[str]:
         except Unreadable as error:
             after = f" (after {counted(tally.rows, 'row')})" if tally.rows else ""
             why = "; ".join([f"{error}{after}", *how])
-            raise cannot_read(job.source, Unreadable(why, error.options)) from None
+            error.args = (why,)
+            raise
     return [*(f"read: {remark}." for remark in how), *remarks]
 
 
@@ -99,8 +101,9 @@ def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> AbstractCo
 def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: TableTally) -> list[str]:
     """Solve rows of cells: results follow with the separator and the decimal mark of the table."""
     wanted = job.wanted
-    table = Csv(blocks_of(source), lambda columns: recognised(columns, VOCABULARY, wanted.named))
-    columns = read_columns(table.columns, wanted)
+    known = partial(recognised, vocabulary=VOCABULARY, named=wanted.naming.named)
+    table = Csv(blocks_of(source), known, wanted.naming)
+    columns = read_columns(table.columns, wanted, rows=table.first_rows)
     pieces = table.pieces([*columns.headings, *columns.label])
     first = [*islice(pieces, 1)]
     in_first = ((piece.cells.iter_rows(), range(len(columns.headings))) for piece in first)
@@ -147,6 +150,8 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool, digits:
 def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: TableTally) -> list[str]:
     """Solve lines, each of which is an object: results become its last members."""
     columns, wanted = ReadColumns([]), job.wanted
+    if wanted.naming.words:
+        raise SceneError("columns", None, "takes columns in their order; those of NDJSON have names")
 
     def headings(keys: Sequence[str]) -> Sequence[Heading]:
         nonlocal columns
@@ -159,7 +164,7 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
             target.flush()
     keys = [*(heading.column for heading in columns.headings if heading.place >= 0), *columns.not_read]
     known = {*map(without_blanks, keys)}  # any line may have what --column names
-    if absent := [column for column in wanted.named if without_blanks(column) not in known]:
+    if absent := [column for column in wanted.naming.named if without_blanks(column) not in known]:
         raise Unreadable(f"there is no column {listed(absent[:1])}; there are {listed(keys)}")
     return _remarks(columns, wanted)
 
@@ -192,7 +197,8 @@ def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tall
         table = pl.scan_parquet(source)
         schema = table.collect_schema()
         total = int(table.select(pl.len()).collect().item())
-        columns = read_columns(schema.names(), job.wanted)
+        first = [[str(cell) for cell in row] for row in table.head(ROWS_SHOWN).collect().rows()]
+        columns = read_columns(schema.names(), job.wanted, rows=first)
         head = with_results(pl.DataFrame(schema=schema), columns, job.wanted)
         parts = table.collect_batches(maintain_order=True)
         with progress(parts, total, pl.DataFrame.__len__, pl.DataFrame.__len__) as watched:
@@ -249,7 +255,7 @@ def _remarks(columns: ReadColumns, wanted: Wanted, table: Csv | None = None) -> 
     if units and any(heading.read.size != 1 or heading.read.terms for heading in headings):
         remarks.append(f"results: {', '.join(f'{x} in {unit}' for x, unit in units.items())}.")
     if columns.not_read:
-        remarks.append(f"not read: {listed(columns.not_read)}.")
+        remarks.append(f"not read: {', '.join(columns.not_read)}.")
     return remarks
 
 

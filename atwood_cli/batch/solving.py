@@ -16,27 +16,31 @@ from ..explain.tally import EXPECTED, Tally
 from ..numbers.digits import to_double
 from ..numbers.text import counted, in_quotes, shortened, without_blanks
 from ..reading.inputs import NO_UNCERTAINTY, read_exactly
-from ..reading.names import divided, input_meant
+from ..reading.names import input_meant
+from ..reading.units import UNITS, symbol_of
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import REGIMES, STANDARD, TABLE_NAMES
 from ..solver.scene import COLUMNS, INPUTS, MASSES, Input, Scene, SceneError, Unit
 from ..tables.cells import EMPTY, has_unit, read_cell
 from ..tables.headings import (
-    LIKE_SUM,
     LONGEST_HEADING,
     MASS_NAMES,
-    NO_MASS,
+    NOTHING_SAID,
+    UNREAD,
     Heading,
+    Naming,
     Vocabulary,
     divisions,
     is_mass,
     is_unit,
     listed,
-    naming,
+    named,
     read_headings,
-    refused,
+    unit_within,
 )
+from ..tables.places import asked
+from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable
 
 if TYPE_CHECKING:
@@ -64,15 +68,14 @@ LONG_CELL = 100
 
 
 class Wanted(NamedTuple):
-    """The quantities wanted of a table, its columns that hold no input, and the inputs by other headings.
+    """The quantities wanted of a table, and what the user says of its columns.
 
-    ``conditions`` are expected to hold in each row.
-    ``given`` are inputs that all rows share, and ``digits`` those to which results are rounded, if any.
+    ``conditions`` are expected to hold in each row. ``given`` are inputs that all rows share, and ``digits``
+    those to which results are rounded, if any.
     """
 
     names: Sequence[str]
-    labels: Collection[str] = ()
-    named: Mapping[str, str] = {}
+    naming: Naming = NOTHING_SAID
     conditions: Sequence[Condition] = ()
     given: Mapping[str, str] = {}
     digits: int | None = None
@@ -95,48 +98,51 @@ class ReadColumns(NamedTuple):
 # Columns
 
 
-def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> ReadColumns:
+def read_columns(
+    columns: Sequence[str], wanted: Wanted, whole: bool = True, rows: Sequence[Sequence[str]] = ()
+) -> ReadColumns:
     """Find the inputs among the columns. If the table is not ``whole``, a mass without a column has no cells.
 
-    Raises Unreadable if a column has the name of a result, or may mean an input and is no label.
+    ``rows`` are the first, to show. Raises NotUnderstood if a mass is missing, or a column may mean an input;
+    Unreadable if one has the name of a result.
     """
     if clash := [column for column in columns if column in wanted.columns]:
         names = f"{listed(clash)}; leave them out to solve a table of results again, or rename them"
         raise Unreadable(f"it has columns with the names of results: {names}")
-    known = {without_blanks(column): column for column in columns}
-    labels = {known.get(x, x) for x in divided(map(without_blanks, wanted.labels), known)}
-    named = {known.get(without_blanks(column), column): name for column, name in wanted.named.items()}
-    headings = read_headings(columns, VOCABULARY, labels, named, whole)
-    inputs = {heading.name for heading in headings}
-    if double := [name for name in wanted.given if name in inputs]:
+    naming = wanted.naming
+    given = {x for x, text in wanted.given.items() if read_exactly(x, text).number is not None}
+    ask = partial(asked, sheet=Sheet(columns, rows), naming=naming, vocabulary=VOCABULARY, given=given)
+    ask = partial(ask, missing_of=_missing, may_matter=lambda i: bool(_meant(columns[i])))
+    if naming.is_open:
+        raise ask("its columns are to be decided")
+    try:
+        said = naming.of(columns, whole)
+        headings = read_headings(columns, VOCABULARY, said)
+    except Unreadable as error:
+        raise ask(str(error)) from None
+    if double := [heading.name for heading in headings if heading.name in wanted.given]:
         raise SceneError(double[0], wanted.given[double[0]], "is a column of the table, too; leave one out")
-    inputs |= {name for name, text in wanted.given.items() if read_exactly(name, text).number is not None}
-    missing = [mass for mass in MASSES if mass not in inputs]
+    inputs = {*given, *(heading.name for heading in headings)}
+    missing = _missing(inputs)
     if missing and whole:
-        way = f"; give {' '.join(f'--column {x}=HEADING' for x in missing)}, or --{missing[0]} for all rows"
-        raise Unreadable(f"it lacks {' and '.join(missing)}; there are {listed(columns)}", way)
+        raise ask(f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing")
     if not (headings or missing):
         raise Unreadable(f"no column holds an input; there are {listed(columns)}")
-    read = {*labels, *(heading.column for heading in headings)}
-    not_read = [column for column in columns if column not in read]
-    for column in not_read:
-        _check_unread(column, inputs if whole else ())  # in NDJSON, another row may lack an input
+    not_read = [i for i in range(len(columns)) if i not in (heading.place for heading in headings)]
+    for i in not_read:
+        meant = _meant(columns[i])
+        is_known = whole and {"diameter": "R"}.get(meant, meant) in inputs  # another line may lack it
+        if meant and said[i] != UNREAD and not is_known:
+            about = INPUTS[meant].meaning if meant in INPUTS else "twice R"
+            raise ask(f"column {in_quotes(columns[i])} may mean {meant} ({about})")
     has_label = wanted.conditions and columns and all(heading.place for heading in headings)
     label = [Heading(0, columns[0], LABEL)] if has_label else []
-    return ReadColumns([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read, label=label)
+    headings += [Heading(-1, mass, mass) for mass in missing]
+    return ReadColumns(headings, [named(columns[i], i) for i in not_read], label=label)
 
 
-def _check_unread(column: str, inputs: Collection[str]) -> None:
-    """Raise Unreadable for a heading that may mean an input, unless the table has that."""
-    name = _meant(column)
-    if name == "diameter" and "R" not in inputs:
-        raise refused(column, "may be a diameter, twice R; give R")
-    if name in INPUTS and name not in inputs:
-        if name == "M" and LIKE_SUM.search(column[:LONGEST_HEADING]):
-            raise refused(column, NO_MASS)
-        raise refused(
-            column, f"may mean {name} ({INPUTS[name].meaning}); rename it", naming(Heading(0, column, name))
-        )
+def _missing(has: Collection[str]) -> list[str]:
+    return [mass for mass in MASSES if mass not in has]
 
 
 def _meant(column: str) -> str:
@@ -149,7 +155,8 @@ def _meant(column: str) -> str:
     letters = normalize("NFKC", column[:LONGEST_HEADING]).translate(GREEK_SPELLED)
     words = " ".join(re.findall(r"[^\W\d_]+", letters))
     meanings = (name for name, pattern in LIKE_INPUTS.items() if re.search(pattern, words, re.I))
-    return next(meanings, "M" if is_mass(column) else "")
+    is_angle = symbol_of(unit_within(column, Heading(0, column, "wrap"))) in UNITS["angle"]
+    return next(meanings, "wrap" if is_angle else "M" if is_mass(column) else "")
 
 
 # Rows

@@ -43,6 +43,7 @@ class Command(TyperCommand):
     """A command with help by group, and with hints at three slips that typer would misunderstand."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        ctx.obj = [*args]  # as they were typed
         if ctx.resilient_parsing:  # to complete a line that is not finished
             return super().parse_args(ctx, args)
         options: dict[str, Any] = {flag: param for param in self.get_params(ctx) for flag in param.opts}

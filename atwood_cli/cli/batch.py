@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import Annotated
 
+from typer import Context
+
 from ..explain.conditions import read_condition
 from ..numbers.text import counted
 from ..output.files import STDOUT
@@ -12,7 +14,7 @@ from ..reading.inputs import read_whole
 from ..reading.names import read_names
 from ..solver.quantities import STANDARD
 from ..solver.scene import INPUTS, SceneError
-from ..tables.sources import FORMATS, check_format, read_format
+from ..tables.sources import FORMATS, Unreadable, check_format, read_format
 from .options import (
     COULD_NOT,
     DONE,
@@ -23,9 +25,11 @@ from .options import (
     Force,
     Labels,
     Named,
+    Places,
     SheetName,
     argument,
     option,
+    refuse,
     with_options,
 )
 
@@ -73,10 +77,11 @@ Examples:
 
 Columns {", ".join(INPUTS)} and drop are the options of solve, which give what
 all rows share: numbers in SI units, wrap in degrees, or in the unit of the heading, as m1 (g), M [kg], R/cm.
-An empty cell, NA, NULL or null is not given. Other columns are kept and named as not read, but one that may
-mean an input is refused, like radius without R. Results follow each row; a row with too few or too many cells
-is an error. Piped rows are solved as they come. Cells become doubles in SI units; solve reads 0.1 as exactly
-1/10, so last digits may differ. A row with a unit or radians in a cell is solved by itself, exactly as typed.
+An empty cell, NA, NULL or null is not given. Other columns are kept and named as not read; one that may mean
+an input, like radius without R, is asked for, and --columns says what each is, with or without headings.
+Results follow each row; a row with too few or too many cells is an error. Piped rows are solved as they come.
+Cells become doubles in SI units; solve reads 0.1 as exactly 1/10, so last digits may differ. A row with a
+unit or radians in a cell is solved by itself, exactly as typed.
 
 The usual seven results are {", ".join(STANDARD)}.
 The exit status is 1 if a row has an error, if a quantity that --only names has no value in any row, or
@@ -86,11 +91,13 @@ if there is no row or one that does not meet what is expected. In NDJSON a bad l
 
 @with_options(SCENE | FALL)
 def batch(
+    context: Context,
     table: Table,
     given: Mapping[str, str | None],
     *,
     output: OutTable = None,
     from_: From = None,
+    columns: Places = None,
     column: Named = None,
     label: Labels = None,
     sheet: SheetName = None,
@@ -105,7 +112,7 @@ def batch(
 ) -> int:
     from ..batch.run import Job, run_batch
     from ..batch.solving import ERROR, VOCABULARY, TableTally, Wanted
-    from ..tables.headings import read_named
+    from ..tables.headings import OPEN, read_naming
 
     asked = list(dict.fromkeys(read_names("only", only or [])))
     kind = read_format(from_, table)
@@ -114,14 +121,16 @@ def batch(
     output = output or STDOUT
     check_format(output, "md" if markdown else kind)
     conditions = [*map(read_condition, expect or [])]
-    shared = {name: value for name, value in given.items() if value is not None}
+    shared = {name: value for name, value in given.items() if value not in (None, OPEN)}
     rounded_to = None if digits is None else read_whole("digits", digits, 1, 17)
-    named = read_named(column or (), VOCABULARY)
-    wanted = Wanted(asked or STANDARD, label or (), named, conditions, shared, rounded_to)
+    naming = read_naming(columns or "", column or (), label or (), VOCABULARY)
+    wanted = Wanted(asked or STANDARD, naming, conditions, shared, rounded_to)
     job = Job(table, kind, output, force, wanted, sheet, markdown)
     tally = TableTally(asked, conditions)
     try:
         remarks = run_batch(job, tally)
+    except Unreadable as error:
+        return refuse(context, table, error)
     except KeyboardInterrupt:
         if tally.rows:
             say(f"stopped after {counted(tally.rows, 'row')}")

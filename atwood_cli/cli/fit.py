@@ -3,12 +3,14 @@
 from collections.abc import Mapping
 from typing import Annotated, Any
 
+from typer import Context
+
 from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..output.forms import FORMS, Destination, Picture, show
 from ..output.text import say
 from ..reading.names import divided, read_names
 from ..solver.scene import SceneError
-from ..tables.sources import Unreadable, cannot_read
+from ..tables.sources import Unreadable
 from .options import (
     COULD_NOT,
     DONE,
@@ -16,10 +18,12 @@ from .options import (
     OUTPUT,
     Labels,
     Named,
+    Places,
     SheetName,
     argument,
     flag,
     option,
+    refuse,
     scene_option,
     with_options,
 )
@@ -31,12 +35,12 @@ Find = Annotated[
         "Measured",
         metavar="NAME",
         words=lambda: {name: QUANTITIES[name].words for name in FITTED},
-        help="Fit just this: rim_mass, axle, gravity or delay; repeatable, or a,b.",
+        help="Fit just this: rim_mass, axle, gravity or delay; or a,b.",
     ),
 ]
 Without = Annotated[
     list[str] | None,
-    option("Measured", metavar="ROW", help="Leave out this row, or a cell, as 8:t2; repeatable, or 5,7."),
+    option("Measured", metavar="ROW", help="Leave out this row, or cell, as 8:t2; repeatable; 5,7."),
 ]
 Only = Annotated[
     list[str] | None,
@@ -51,14 +55,15 @@ HELP = """Fit laboratory runs: pulley inertia and axle friction.
 Examples:
   atwood fit runs.csv --drop 98cm --g 9.804
   atwood fit runs.csv --R 25mm --inertia disk --figure line.svg
-  atwood fit runs.csv --column t='Fallzeit (s)' --drop 98cm
+  atwood fit runs.csv --columns m1:g,m2:g,-,t,t --drop 98cm
   atwood fit runs.csv --find gravity --M 84g --axle 0
   atwood fit runs.csv --find rim_mass,axle,delay --without 8:t2
 
 Each row is a run, with columns m1, m2, and a, or t and drop, the height of fall; an option gives what is the
 same for all, as --m1 0. Units stand in headings, as m1 (g) or "t, s", or in cells. Repeats are further rows,
 or columns t1, t2 and so on. Uncertainties are in cells, 2.05(2), in headings, m1 (±1 g), or in columns headed
-u(t), t_err, or ±, that of the column before it. Other columns are labels, unless --column says what they are.
+u(t), t_err, or ±, that of the column before it. Words of --columns are such names, with a unit as in m1:g;
+m1:g+ fills blank cells from above, and no headings are needed.
 Values of --M, --I, --axle and --g are not fitted. Results: rim_mass is the pulley's inertia as a mass at its
 rim, c = I/R², for a disk M/2; axle is the axle's friction as a force at the rim. Both are fitted, unless
 --find names others.
@@ -70,7 +75,7 @@ def _shared(**remarks: str | None) -> dict[str, Any]:
 
 
 SHARED = {
-    **_shared(drop=", of all runs", m1=", of all runs", m2=", of all runs"),
+    **_shared(drop="", m1=", of all runs", m2=", of all runs"),
     "hanger": Annotated[str | None, option("Scene", metavar="MASS", help="Mass to add to m1 and to m2.")],
     **_shared(M=", if it is known", inertia="; adds pulley_mass", I="; needs R"),
     **_shared(R="; adds moment_of_inertia", axle="", g=None),
@@ -80,6 +85,7 @@ SHARED = {
 
 @with_options(OUTPUT, FIGURE, SHARED)
 def fit(
+    context: Context,
     table: Table,
     given: Mapping[str, str | None],
     target: Destination,
@@ -87,6 +93,7 @@ def fit(
     *,
     find: Find = None,
     without: Without = None,
+    columns: Places = None,
     column: Named = None,
     label: Labels = None,
     sheet: SheetName = None,
@@ -99,11 +106,10 @@ def fit(
     from ..laboratory.report import report_of
 
     try:
-        best = fit_of(
-            table, given, find or [], label or [], divided(without or []), column or [], sheet, flag
-        )
+        left_out, words = divided(without or []), columns or ""
+        best = fit_of(table, given, find or [], left_out, words, column or [], label or [], sheet, flag)
     except Unreadable as error:
-        raise cannot_read(table, error) from None
+        return refuse(context, table, error)
     if picture is not None:
         from ..laboratory.fit_figure import save
 

@@ -3,19 +3,24 @@
 import inspect
 import os
 import shlex
+import sys
 from collections.abc import Callable, Mapping
 from itertools import chain
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any, get_args
+from typing import TYPE_CHECKING, Annotated, Any, get_args
 
 import typer
 
-from ..output.files import STDOUT, check_free
+from ..output.files import STDOUT, check_free, printable
 from ..output.forms import FORMS, Destination, Picture
+from ..output.text import say
 from ..solver.quantities import NAMES, QUANTITIES
 from ..solver.scene import FALL as FALLS
 from ..solver.scene import INPUTS, MEASURED, SceneError, parameter_of
+
+if TYPE_CHECKING:
+    from ..tables.sources import Unreadable
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """The environment variable by which a shell asks for completions of a word."""
@@ -200,15 +205,26 @@ Named = Annotated[
         help="Say what a column is, as m1='Mass 1 (g)'; repeatable.",
     ),
 ]
+Places = Annotated[
+    str | None,
+    option("Files", "--columns", metavar="WORDS", help="What each column is, as m1:g,m2:g,-,t,t; '?' asks."),
+]
 Labels = Annotated[
     list[str] | None,
-    option(
-        "Files",
-        "--label",
-        metavar="COLUMN",
-        help="Do not read this column, though it may be meant for an input; repeatable, or a,b.",
-    ),
+    option("Files", "--label", metavar="COLUMN", help="Do not read this column; repeatable, or a,b."),
 ]
+
+
+def refuse(context: typer.Context, source: str, why: "Unreadable") -> int:
+    """Say why a table cannot be read, and, if it is not understood, list its columns and what to type."""
+    from ..tables.places import NotUnderstood
+    from ..tables.sources import cannot_read
+
+    say(str(cannot_read(source, why)))
+    if isinstance(why, NotUnderstood):
+        lines = why.listing([*context.command_path.split(), *context.obj])
+        print(*map(printable, lines), sep="\n", file=sys.stderr)
+    return COULD_NOT
 
 
 # Where results go, and in which form

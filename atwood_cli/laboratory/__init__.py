@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any
 
-from ..numbers.text import without_blanks
 from ..output.text import naming_the_extra
 from ..reading.inputs import IS_NOT_ONE, read_input
 from ..reading.names import divided
@@ -45,6 +44,7 @@ def fit(
     axle: Given | None = None,
     find: str | Sequence[str] | None = None,
     without: str | int | Collection[int | str] = (),
+    columns: str | Sequence[str] | None = None,
     sheet: str | None = None,
 ) -> Fit:
     """Fit the pulley's inertia and its axle's friction to runs of a laboratory, by T_h - T_l = c a + f.
@@ -62,6 +62,9 @@ def fit(
             of inertia, ``inertia`` the pulley's mass.
         find: The quantities to fit, of "rim_mass", "axle", "gravity" and "delay"; if None, the first two
             unless given. Of these two, each must be given or fitted.
+        columns: What each column is, from the left, as "m1:g,m2:g,-,t,t": a name, perhaps with a unit, t_err
+            for the uncertainties of t, - for a column that is not read, m1:g+ where a blank cell has what
+            stands above it, "?" for an error that lists the columns. If None, headings say it.
         sheet: The sheet of a workbook, .xlsx or .ods; the first if None.
         without: Rows to leave out, by their numbers from 1, and cells, as "8:t2"; or one of them, or a text,
             as "5,8:t2".
@@ -77,6 +80,7 @@ def fit(
         ImportError: SciPy is missing.
         ArithmeticError: The runs do not determine the quantities, or no pulley explains them.
     """
+    from ..tables.places import NotUnderstood
     from ..tables.sources import cannot_read
 
     with naming_the_extra():
@@ -87,40 +91,41 @@ def fit(
     names = [find] if isinstance(find, str) else find or ()
     left_out = divided([str(without)]) if isinstance(without, str | int) else without
     try:
-        return results_of(fit_of(runs, given, names, without=left_out, sheet=sheet))
+        return results_of(fit_of(runs, given, names, left_out, columns or (), sheet=sheet))
     except Unreadable as error:
+        why = f"{error}; give columns={error.typed!r}" if isinstance(error, NotUnderstood) else str(error)
         if isinstance(runs, str | PathLike):
-            raise cannot_read(fspath(runs), Unreadable(str(error))) from None
-        raise ValueError(f"cannot read the runs: {error}") from None
+            raise cannot_read(fspath(runs), Unreadable(why)) from None
+        raise ValueError(f"cannot read the runs: {why}") from None
 
 
 def fit_of(
     table: Table,
     given: Mapping[str, Given | None],
     find: Sequence[str],
-    labels: Collection[str] = (),
     without: Collection[int | str] = (),
-    columns: Sequence[str] = (),
+    columns: str | Sequence[str] = (),
+    named: Sequence[str] = (),
+    labels: Sequence[str] = (),
     sheet: str | None = None,
     option: Callable[..., str] = in_python,
 ) -> Fitted:
     """Return the fit of a table, which may be "-" for stdin. Raises SceneError, Unreadable, CannotSeparate.
 
-    ``columns`` are words NAME=HEADING, ``labels`` headings that belong to no run. ``option`` returns an
-    option as the user types it.
+    ``columns`` are words by place, ``named`` words NAME=HEADING, ``labels`` headings that belong to no run.
+    ``option`` returns an option as the user types it.
     """
-    from ..tables.headings import read_named
+    from ..tables.headings import OPEN, read_naming
     from .columns import VOCABULARY
     from .fitting import conditions_of, fitted, read_find
     from .runs import read_runs
 
-    shared = {x: _read_given(x, value) for x, value in given.items() if value is not None}
+    shared = {x: _read_given(x, value) for x, value in given.items() if value not in (None, OPEN)}
     inputs: dict[str, Input] = {x: read_input(x, None) for x in INPUTS}
     inputs |= {x: read for x, read in shared.items() if x not in (*MASSES, "hanger")}
-    named = read_named(map(without_blanks, columns), VOCABULARY)
     if not {"g", "gravity"} & {*divided(find)}:
         shared.setdefault("g", inputs["g"])
-    runs = read_runs(table, [*map(without_blanks, labels)], shared, without, named, sheet)
+    runs = read_runs(table, read_naming(columns, named, labels, VOCABULARY), shared, without, sheet)
     conditions = conditions_of({**inputs, **runs.same}, option)
     return fitted(runs, conditions, read_find(find, conditions))
 

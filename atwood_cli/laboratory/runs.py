@@ -2,7 +2,7 @@
 
 import re
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -12,19 +12,23 @@ from numpy.typing import NDArray
 
 from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import shortened
-from ..reading.names import divided
 from ..solver.scene import MASSES, Input, SceneError
 from ..tables.cells import OWN_UNIT, read_cell
-from ..tables.headings import Heading, read_as, refused
-from ..tables.sheets import Sheet, sheet_of, units_in_cells
+from ..tables.headings import NOTHING_SAID, Heading, Naming, named, read_as, refused
+from ..tables.records import LIKE_NUMBER
+from ..tables.sheets import Sheet, filled_down, sheet_of, units_in_cells
 from ..tables.sources import Unreadable
-from .columns import CONDITIONS, MEAN, MEASURED, VOCABULARY, Columns, Kind, columns_of
+from .columns import CONDITIONS, MEASURED, VOCABULARY, Columns, Kind, columns_of
 
 Column = NDArray[np.float64]
 Places = NDArray[np.intp]
 Selection = NDArray[np.bool_]
-STATISTIC = re.compile(rf"\s*(?:{MEAN}|s\.?d\.?|st(?:d|andard)?\.? ?dev\w*)\W*", re.IGNORECASE)
-"""The cells by which a row is known to be computed from others."""
+STATISTIC = re.compile(
+    r"(?i)\s*(?:(?:avg|average|mean|mittel(?:wert)?|moyenne|promedio|m[eé]dia)\b|s\.?d\.?"
+    r"|st(?:d|andard)?\.? ?dev\w*)\W*"
+)
+"""The cells by which a row is known to be computed from others, also where no row has a number there."""
+LIKE_WORD = re.compile(r"\D*(?:[^\W\d_]\W*[^\W\d_]|[^\W\d_a-zA-Z])\D*")
 NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
 LARGE_MASSES = 0.5, "some masses are 0.5 kg or more", "g"
 LARGE = {
@@ -100,33 +104,34 @@ RowsOfRuns = Mapping[tuple[tuple[str, Number], ...], Sequence[Row]]
 
 def read_runs(
     source: Any,
-    labels: Collection[str] = (),
+    naming: Naming = NOTHING_SAID,
     given: Mapping[str, Input] = {},
     without: Collection[int | str] = (),
-    named: Mapping[str, str] = {},
     sheet_name: str | None = None,
 ) -> Runs:
     """Return the runs of a table; rows that differ only in what was measured are one run.
 
     ``source`` is the path of a file, with the name of its sheet, "-" for stdin, or columns by their headings.
-    ``labels`` are headings that belong to no run, and ``named`` maps headings to what they mean. ``given``
-    has what all runs share, such as m1 or drop, and perhaps a hanger, which is added to m1 and m2.
+    ``naming`` has what the user says of columns, and ``given`` what all runs share, such as m1 or drop, and
+    perhaps a hanger, which is added to m1 and m2.
     Rows ``without``, by their numbers, and their cells, as 8:t2, are left out. Raises Unreadable if it is no
     table of runs, SceneError for what does not fit the table.
     """
-    sheet = units_in_cells(sheet_of(source, VOCABULARY, named, sheet_name))
-    columns = columns_of(sheet, divided(labels, sheet.columns), given, named)
+    sheet = filled_down(units_in_cells(sheet_of(source, VOCABULARY, naming, sheet_name)), naming.filled)
+    columns = columns_of(sheet, naming, given)
     by = {x: given[x].number for x in ("R", "g") if x in given and not given[x].uncertainty}
     shared = {x: _in_own_terms(x, given[x], by) for x in (*MASSES, "hanger", "drop") if x in given}
     common = {x: float(read.uncertainty) for x, read in shared.items() if read.uncertainty and x != "drop"}
     if wide := [x for x in common if shared[x].uncertainty >= shared[x].number]:
         raise SceneError(wide[0], given[wide[0]].given, REACHES_0)
     hanger = shared.pop("hanger", Input(Fraction(0)))
-    others = [*columns.others]
+    others = [f"{named(sheet.columns[0], 0)} as the numbers of rows"] if columns.has_numbers else []
     if hanger.given is not None:
         others.append(f"{shortened(str(hanger.given))} of hanger added to m1 and m2")
     others += sheet.remarks
     remarks = read_as(columns.headings, sheet.separator, columns.comma, others, columns.with_units)
+    if columns.unread:
+        remarks.append(f"not read: {', '.join(named(sheet.columns[i], i) for i in columns.unread)}.")
     left_out = [*map(str, without)]
     rows = [*_rows_of(sheet, columns, by, left_out)]
     same = _same_in_all(rows)
@@ -149,7 +154,8 @@ def read_runs(
     if left_out:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
     result = _as_columns(columns, runs, left_out)
-    doubts = _doubts(result, {**given, **same}, columns.has_unit)
+    has_unit = {own.name for own in columns.headings if own.unit or own.place in columns.with_units}
+    doubts = _doubts(result, {**given, **same}, has_unit)
     return result._replace(remarks=remarks, doubts=doubts, common=common, same=same)
 
 
@@ -187,7 +193,30 @@ def _doubts(runs: Runs, given: Mapping[str, Input], has_unit: Collection[str]) -
     m1, m2 = (runs.given[mass] for mass in MASSES)
     if min(m1) == max(m1) > CART * max(m2):
         doubts[""] = f"m1 is {m1[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1."
-    return [*doubts.values()]
+    return [*doubts.values(), *_means_among_repeats(runs)]
+
+
+def _means_among_repeats(runs: Runs) -> list[str]:
+    """Say which column of repeats is the mean of the others in every row, more often than by chance."""
+    rows = defaultdict[str, dict[str, float]](dict)
+    for cell, value in zip(runs.cells, runs.values, strict=True):
+        row, _, word = cell.partition(":")
+        rows[row][word] = value
+    words = sorted({word for cells in rows.values() for word in cells})
+    whole = np.array([[cells[x] for x in words] for cells in rows.values() if len(cells) == len(words)])
+    for place, word in enumerate(words if len(words) > 2 and len(whole) > 2 else ()):
+        others, step = np.delete(whole, place, axis=1), _step(whole[:, place])
+        off = abs(whole[:, place] - others.mean(axis=1))
+        if (off < 0.51 * step).all() and others.std(axis=1).mean() > 4 * step:  # beyond chance
+            what = f"in each row {word} is the mean of the other repeats"
+            return [f"{what}; if it was computed, it is no repeat: leave it unread."]
+    return []
+
+
+def _step(values: Iterable[float]) -> float:
+    """Return the step of the last digit of any of these values."""
+    exponents = (ALL_DIGITS.normalize(Decimal(str(x))).as_tuple().exponent for x in values)
+    return 10.0 ** min(0, *map(int, exponents))
 
 
 def _in_own_terms(name: str, read: Input, by: Mapping[str, Any]) -> Input:
@@ -228,7 +257,7 @@ def _as_columns(columns: Columns, runs: RowsOfRuns, left_out: Collection[str]) -
         u_values,
         np.repeat(np.arange(len(used)), [*map(len, used)]),
         [place for some in used for place in some],
-        10.0 ** min(0, *(int(ALL_DIGITS.normalize(Decimal(str(x))).as_tuple().exponent) for x in values)),
+        _step(values),
     )
 
 
@@ -261,17 +290,24 @@ def _no_run(row: Sequence[str], headings: Sequence[Heading]) -> str:
     return f"the height and the time are {what}" if begins else ""
 
 
-def _word(own: Heading) -> str:
-    """Return the word for a column by which its cells are named: t2, m1."""
-    return f"{own.name[0]}{own.number}" if own.name in MEASURED else own.name
+def _rows_by_words(sheet: Sheet, places: Iterable[int]) -> dict[int, str]:
+    """Return why rows with a word, as of a mean, where most have a number are no runs, by their places."""
+    why = dict[int, str]()
+    for place in places:
+        words = [i for i, row in enumerate(sheet.rows) if LIKE_WORD.fullmatch(row[place])]
+        if sum(bool(LIKE_NUMBER.match(row[place])) for row in sheet.rows) > len(words):
+            what = f"{named(sheet.columns[place], place)} has a word there, and most rows a number"
+            why |= dict.fromkeys(words, what)
+    return why
 
 
 def _rows_of(
     sheet: Sheet, columns: Columns, by: Mapping[str, Any], left_out: Collection[str]
 ) -> Iterator[Row]:
     """Yield the rows of a table, without those that cannot be read and are left out. Raises Unreadable."""
-    for number, row in zip(columns.numbers, sheet.rows, strict=True):
-        if why := _no_run(row, columns.headings):
+    by_words = _rows_by_words(sheet, columns.unread)
+    for i, (number, row) in enumerate(zip(columns.numbers, sheet.rows, strict=True)):
+        if why := by_words.get(i) or _no_run(row, columns.headings):
             yield Row(number, {}, why)
             continue
         try:
@@ -280,7 +316,8 @@ def _rows_of(
             if str(number) in left_out:
                 continue
             raise Unreadable(f"row {number}: {error}; {NO_RUN}") from None
-        cells = {f"{number}:{_word(own)}": (own, cell) for own, cell in read}
+        words = [f"{x.name[0]}{x.number}" if x.name in MEASURED else x.name for x, _ in read]
+        cells = {f"{number}:{word}": cell for word, cell in zip(words, read, strict=True)}
         is_measured = any(own.name in MEASURED for own, _ in read)
         yield Row(number, cells, "" if is_measured else f"no {MEASURED[columns.kind]} was measured")
 
@@ -296,7 +333,7 @@ def _read_row(row: Sequence[str], columns: Columns, by: Mapping[str, Any]) -> li
         if not (cell := read_cell(heading, row, columns.comma)):
             if name in MEASURED:
                 continue
-            raise SceneError(name, None, "is missing; write it in each row")
+            raise SceneError(name, None, f"is missing; write it in each row, or fill by {name}+ in columns")
         if name in CONDITIONS:
             by = {**by, name: cell.number}
         else:

@@ -3,19 +3,18 @@
 A heading is `name [number]`, and perhaps a unit: `(unit)`, `[unit]`, `/unit`, `in unit`, or behind a comma, a
 blank or an underscore: m1, "m1 (g)", "time 2 [s]", a/(m/s²), "h, cm". A column of uncertainties is u(name)
 or name_err, or ± behind the column of the quantity; a unit may follow. Blanks and underscores in names do not
-count. The user names others, as by --column t='Fallzeit (s)'. What a heading says is used, or named in the
-line "read as", or refused with what to type.
+count. The user names others by place, as m1:g,-,t, or by heading. What a heading says is used, or named in
+the line "read as", or asked for.
 """
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from shlex import quote
 from typing import NamedTuple
 from unicodedata import normalize
 
-from ..numbers.text import in_quotes, without_blanks
-from ..reading.names import MASS_WORDS
+from ..numbers.text import counted, in_quotes, without_blanks
+from ..reading.names import MASS_WORDS, divided
 from ..reading.units import PERCENT, UNITS, Malformed, read_unit, symbol_of
 from ..solver.scene import SceneError, Unit, parameter_of
 from .sources import Unreadable
@@ -34,12 +33,16 @@ LIKE_UNIT = re.compile(r"\w ?/ ?\w|\^|[²³]|s-[12]$")
 """The signs of a unit in brackets, also of one that is not known."""
 MASS_NAMES = {f"{word}{n}": f"m{n}" for x in MASS_WORDS for word in (x, x.capitalize()) for n in (1, 2)}
 """The masses by names that can mean nothing else, without blanks."""
-LIKE_SUM = re.compile(r"(?i)total|gesamt|\bsum|somme|dif(f|[ei]r)|^\W*([Σ∑Δ∆]|delta|dm\b)|\bm[\w ]*[-–−+] ?m")
-"""The headings of sums and of differences."""
-NO_MASS = "could be a sum or a difference of masses, which is not read"
+LIKE_MASS = re.compile(
+    r"(?:\b|[_ΔΣ∑])(?:(?<!\d )m\d*|mass\w*|masas?|масс\w*|gewicht\w*|weights?|hangers?|(?:over|pay)?load"
+    r"|rider|beban|peso|poids|\w*груз\w*)(?:\b|_)",
+    re.IGNORECASE,
+)
 UNCERTAINTY = re.compile(r"u ?\((.+)\)|(.+?)[ _]err")
 OF_COLUMN_BEFORE = ("±", "+/-")
 """The names of columns that hold the uncertainties of the column before."""
+UNREAD, OPEN, FILLED = "-", "?", "+"
+"""The word for a column that is not read; the ends of one to be decided, and of one with blanks to fill."""
 
 
 class Vocabulary(NamedTuple):
@@ -72,33 +75,67 @@ class Heading(NamedTuple):
     stated: str = ""
 
 
+class Naming(NamedTuple):
+    """What a user says of columns: a word for each from the left, or names and labels by their headings.
+
+    Rows above the first number in the ``decisive`` places are headings. Blank cells of places that are
+    ``filled`` have what stands above them.
+    """
+
+    words: Sequence[str] = ()
+    decisive: Collection[int] = ()
+    filled: Collection[int] = ()
+    named: Mapping[str, str] = {}
+    labels: Collection[str] = ()
+
+    @property
+    def is_open(self) -> bool:
+        """Return whether a word is left open, so that the columns are to be listed."""
+        return any(word.endswith(OPEN) for word in self.words)
+
+    def of(self, columns: Sequence[str], whole: bool = True) -> list[str]:
+        """Return what each column is read by: its word, UNREAD, or its own heading.
+
+        Raises SceneError for words that do not fit, and Unreadable if a ``whole`` table lacks a heading.
+        """
+        if self.words:
+            words = [*self.words, *[OPEN if self.is_open else UNREAD] * (len(columns) - len(self.words))]
+            if len(words) > len(columns):
+                rule = f"are {len(words)} words, and the table has {counted(len(columns), 'column')}"
+                raise SceneError("columns", ",".join(words), rule)
+            return [x if word.endswith(OPEN) else word for x, word in zip(columns, words, strict=True)]
+        headings = [*map(without_blanks, columns)]
+        labels = divided(self.labels, headings)
+        if both := [label for label in labels if label in self.named]:
+            raise SceneError("label", both[0], "is also named by --column; leave one of them out")
+        if whole and (absent := [x for x in (*self.named, *labels) if x not in headings]):
+            raise Unreadable(f"there is no column {in_quotes(absent[0])}; there are {listed(columns)}")
+        if whole and (twice := [x for x in self.named if headings.count(x) > 1]):
+            raise Unreadable(f"{headings.count(twice[0])} columns have the heading {in_quotes(twice[0])}")
+        said = zip(columns, headings, strict=True)
+        return [UNREAD if x in labels else self.named.get(x, column) for column, x in said]
+
+
+NOTHING_SAID = Naming()
+
+
 # Headings
 
 
 def read_headings(
-    columns: Sequence[str],
-    vocabulary: Vocabulary,
-    labels: Collection[str] = (),
-    named: Mapping[str, str] = {},
-    whole: bool = True,
+    columns: Sequence[str], vocabulary: Vocabulary, said: Sequence[str] | None = None
 ) -> list[Heading]:
     """Return the columns that hold a quantity, in their order, each with its column of uncertainties.
 
-    ``labels`` are headings of columns without a quantity, whatever they look like. ``named`` maps headings to
-    names of this grammar. Raises Unreadable if two columns hold the same, a unit is wrong, an uncertainty
-    belongs to no column, or a ``whole`` table lacks one of these headings; SceneError if a label is named.
+    ``said`` has what each column is read by, as `Naming.of` returns it. Raises Unreadable if two columns hold
+    the same, a unit is wrong, or an uncertainty belongs to no column.
     """
-    if both := [label for label in labels if label in named]:
-        raise SceneError("label", both[0], "is also named by --column; leave one of them out")
-    if whole and (absent := [heading for heading in (*named, *labels) if heading not in columns]):
-        raise Unreadable(f"there is no column {in_quotes(absent[0])}; there are {listed(columns)}")
     headings: dict[tuple[str, str], Heading] = {}
     uncertain: list[Heading] = []
-    for place, column in enumerate(columns):
-        heading = None if column in labels else _meaning(column, vocabulary, named)
-        if not heading:
+    for place, (column, word) in enumerate(zip(columns, said or columns, strict=True)):
+        if word == UNREAD or not (heading := meaning_of(column, vocabulary, word)):
             continue
-        if heading.stated and not vocabulary.uncertain:
+        if heading.stated and not vocabulary.uncertain and column == word:
             raise refused(column, "states an uncertainty, which only solve and fit take")
         heading = heading._replace(place=place)
         name, number = heading.name, heading.number
@@ -106,13 +143,16 @@ def read_headings(
             uncertain.append(heading)
             continue
         is_repeat = name in vocabulary.repeated
-        if is_repeat and column in named and not number:  # its user may name repeats alike
+        if is_repeat and column != word and not number:  # its user may name repeats alike
             number = str(1 + sum(own.name == name for own in headings.values()))
         if same := headings.get((name, number)):
-            way = "give each repeat its own number" if is_repeat else "rename one"
-            which, other = (same.column, column) if column in named else (column, same.column)
-            why = f"holds {name}, as {in_quotes(other)} does; {way}"
-            raise refused(which, why) if which != other else Unreadable(f"column {in_quotes(which)} {why}")
+            other = "another of that heading" if same.column == column else in_quotes(same.column)
+            way = "are they repeats?" if is_repeat else "read one"
+            raise refused(column, f"holds {name}, as {other} does; {way}")
+        kind = next((own for own in headings.values() if own.name in vocabulary.repeated), None)
+        if kind and is_repeat and (kind.name, bool(kind.number)) != (name, bool(number)):
+            why = f"stands beside {in_quotes(kind.column)}, and one may be computed, as a mean is"
+            raise refused(column, why)
         headings[name, number] = heading._replace(number=number, read=unit_of(heading))
     for heading in uncertain:
         _add_uncertainty(headings, heading)
@@ -121,34 +161,57 @@ def read_headings(
 
 def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[str, str] = {}) -> list[str]:
     """Return the columns that the vocabulary knows, or that the user has named."""
-    return [column for column in columns if _meaning(column, vocabulary, named)]
+    said = [named.get(without_blanks(column), column) for column in columns]
+    return [x for x, word in zip(columns, said, strict=True) if meaning_of(x, vocabulary, word)]
 
 
-def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
-    """Return the names by their headings, from options --column NAME=HEADING. Raises SceneError."""
-    named: dict[str, str] = {}
-    for word in words:
+def read_naming(
+    words: str | Sequence[str], named: Iterable[str], labels: Iterable[str], vocabulary: Vocabulary
+) -> Naming:
+    """Read what a user says of columns, NAME:UNIT by place, or NAME=HEADING. Raises SceneError."""
+    by_heading: dict[str, str] = {}
+    names = ", ".join(dict.fromkeys(vocabulary.names.values()))
+    for word in named:
         name, _, heading = word.partition("=")
-        meaning = _meaning(name, vocabulary, {})
-        if not heading or heading in named or not meaning or not meaning.name:
-            names = ", ".join(dict.fromkeys(vocabulary.names.values()))
+        meaning, heading = meaning_of(name, vocabulary), without_blanks(heading)
+        if not heading or heading in by_heading or not meaning or not meaning.name:
             rule = f"must be NAME=HEADING, as m1='Masse 1 (g)', each heading once; names are {names}"
             raise SceneError("column", word, rule)
-        named[heading] = name
-    return named
+        by_heading[heading] = name
+    typed = words.split(",") if isinstance(words, str) and words else words
+    by_place = [without_blanks(word) or UNREAD for word in typed]
+    if by_place and by_heading:
+        raise SceneError("columns", ",".join(by_place), "says what each column is; leave --column out")
+    filled = [place for place, word in enumerate(by_place) if word.endswith(FILLED)]
+    read = [re.sub(r"^([^:]+):([^?]+)$", r"\1 (\2)", word.removesuffix(FILLED)) for word in by_place]
+    decided = [UNREAD if word.endswith(OPEN) else word for word in read]
+    meanings = {i: own for i, word in enumerate(decided) if (own := meaning_of(word, vocabulary))}
+    for i, word in enumerate(decided):
+        if i not in meanings and word != UNREAD:
+            rule = f"is no word for a column: {names}, or {UNREAD} for one that is not read"
+            raise SceneError("columns", by_place[i], rule)
+        if i in meanings and (unit := meanings[i].unit) and not is_unit(unit, meanings[i]):
+            raise SceneError("columns", by_place[i], f"has the unit {in_quotes(unit)}, of another quantity")
+    twice = {word for i, word in enumerate(read) if i in meanings and read.count(word) > 1}
+    for i, own in meanings.items():  # t,t_err,t,t_err: each of the one before
+        if own.uncertain and read[i] in twice:
+            read[i] = f"± ({own.unit})" if own.unit else "±"
+    single = [i for i, own in meanings.items() if not (own.uncertain or own.name in vocabulary.repeated)]
+    return Naming(read, single or [*meanings], filled, by_heading, [*map(without_blanks, labels)])
 
 
-def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Heading | None:
-    """Return what a column holds, without its place and unit as read; None if the heading is not known."""
+def meaning_of(column: str, vocabulary: Vocabulary, said: str | None = None) -> Heading | None:
+    """Return what a column holds, by what is ``said`` of it or by its heading; None if it is not known.
+
+    Its place and the unit as read are not set. Raises Unreadable if the heading contradicts what is said.
+    """
     text, stated, its_unit = _apart(column)
-    for word, unit, is_loose in divisions(without_blanks(named.get(column, text))):
+    is_said = said is not None and said != column
+    for word, unit, is_loose in divisions(without_blanks(said if said is not None and is_said else text)):
         meaning = _named(word, vocabulary)
         if meaning and not (is_loose and not is_unit(unit, meaning)):
-            if column in named and (own := unit_within(text, meaning)) != unit:
-                if unit and is_unit(own, meaning):
-                    why = f"has the unit {in_quotes(own)}, not {in_quotes(unit)}"
-                    raise refused(column, f"{why}; give --column without a unit")
-                unit = unit or own
+            if is_said:
+                unit = _unit_beside(column, text, meaning, unit, vocabulary)
             # It may be the symbol of the quantity, as in time (t) or Mass (m).
             is_symbol = unit == meaning.name[:1] or vocabulary.names.get(unit) == meaning.name
             if unit in NO_UNIT or (is_symbol and not is_unit(unit, meaning)):
@@ -157,6 +220,20 @@ def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> H
                 unit = its_unit
             return meaning._replace(column=column, unit=unit, stated=stated + its_unit)
     return None
+
+
+def _unit_beside(column: str, text: str, said: Heading, unit: str, vocabulary: Vocabulary) -> str:
+    """Return the unit that is said, or else that of the heading. Raises Unreadable if the two contradict.
+
+    A heading of one letter, as M or T, may mean anything.
+    """
+    own = meaning_of(column, vocabulary)
+    if own and own.name not in ("", said.name) and not re.match(r"[^\W\d_](?![^\W_])", column):
+        raise refused(column, f"means {own.name}, not {said.name}")
+    within = unit_within(text, said)
+    if unit and is_unit(within, said) and symbol_of(within) != symbol_of(unit):
+        raise refused(column, f"has the unit {in_quotes(within)}, not {in_quotes(unit)}")
+    return unit or within
 
 
 def _apart(column: str) -> tuple[str, str, str]:
@@ -179,7 +256,7 @@ def divisions(text: str) -> Iterator[tuple[str, str, bool]]:
     if len(text) <= LONGEST_HEADING:
         if match := next(filter(None, (re.fullmatch(pattern, text) for pattern in DIVIDED)), None):
             yield match[1].strip(), match[2].strip(), False
-        for mark in re.finditer("[, _]+", text):
+        for mark in re.finditer("[., _]+", text):
             yield text[: mark.start()], text[mark.end() :], "," not in mark[0]
 
 
@@ -198,13 +275,6 @@ def unit_within(column: str, meaning: Heading) -> str:
         unit for unit, is_loose in units if not is_loose and (symbol_of(unit) or LIKE_UNIT.search(unit))
     ]
     return next(iter([*fitting, *others]), "")
-
-
-def name_at_start(column: str, vocabulary: Vocabulary) -> str:
-    """Return the quantity that a heading begins with, as m1 of (m1 ± Δm1) (g), or a of a_measured, or ""."""
-    before = re.match(rf"\W*(.+?)(?:\s*{SIGN}|[ _,(\[])", column[:LONGEST_HEADING])
-    meaning = before and _named(before[1], vocabulary)
-    return meaning.name if meaning else ""
 
 
 def is_unit(unit: str, meaning: Heading) -> bool:
@@ -263,17 +333,7 @@ def unit_of(heading: Heading) -> Unit:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(heading.unit)}")
         return read_unit(heading.unit, parameter.dimension, parameter.terms)
     except Malformed as error:
-        way = naming(heading) if parameter.dimension else ""
-        raise refused(heading.column, f"{error}; rename it", way) from None
-
-
-def naming(heading: Heading) -> str:
-    """Return the words on an option that names a column, with a unit if its quantity has one."""
-    unit, column = parameter_of(heading.name).unit, heading.column
-    name = f"u({heading.name})" if heading.uncertain else heading.name
-    has_unit = not unit or is_unit(unit_within(column, heading), heading)
-    typed = f"{name}={column}" if has_unit else f"{name} ({unit})={column}"
-    return f", or give --column {_as_typed(typed)}{'' if has_unit else ', with the unit of its cells'}"
+        raise refused(heading.column, str(error)) from None
 
 
 def is_mass(column: str) -> bool:
@@ -282,21 +342,16 @@ def is_mass(column: str) -> bool:
     return unit != "t" and symbol_of(unit) in UNITS["mass"]
 
 
-def refused(column: str, why: str, way: str = "") -> Unreadable:
-    """Return the error for a heading; a user of the command may go another ``way``, or label the column."""
-    return Unreadable(f"column {in_quotes(column)} {why}", f"{way}{left_unread(column)}")
+def may_be_mass(column: str) -> bool:
+    """Decide whether a heading has a unit of mass, or a word for a mass and no other unit."""
+    unit = unit_within(column, mass := Heading(0, column, "m1"))
+    is_free = not unit or is_unit(unit, mass)
+    return is_mass(column) or (is_free and bool(LIKE_MASS.search(column[:LONGEST_HEADING])))
 
 
-def left_unread(*columns: str) -> str:
-    """Return the options that leave columns unread, to stand behind an error."""
-    labels = " ".join(f"--label {_as_typed(column)}" for column in columns)
-    return f"; {labels} {'leaves it' if len(columns) == 1 else 'leave them'} unread"
-
-
-def _as_typed(word: str) -> str:
-    """Return a word with a heading as a shell takes it, or with escapes."""
-    word = without_blanks(word)
-    return quote(word) if word.isprintable() and len(word) <= LONGEST_HEADING else in_quotes(word)
+def refused(column: str, why: str) -> Unreadable:
+    """Return the error for a heading."""
+    return Unreadable(f"column {in_quotes(column)} {why}")
 
 
 def units_in(row: Sequence[str]) -> list[str]:
@@ -304,6 +359,11 @@ def units_in(row: Sequence[str]) -> list[str]:
     units = [cell.strip(" ()[]") for cell in row]
     is_row_of_units = all(unit in ("", "-", PERCENT) or symbol_of(unit) for unit in units)
     return units if is_row_of_units and any(map(symbol_of, units)) else []
+
+
+def named(column: str, place: int) -> str:
+    """Return a heading as messages show it, or the number of a column that has none."""
+    return in_quotes(column) if column.strip() else f"column {place + 1}"
 
 
 def listed(names: Sequence[str]) -> str:
@@ -337,7 +397,7 @@ def read_as(
         if column != name or (usual and has_all):
             words = f" as {name}" if column != name else ""
             words += (f" in {unit or usual}" if unit or usual else "") + stated.get(place, "")
-            alike.setdefault((bool(usual), words), []).append(in_quotes(column))
+            alike.setdefault((bool(usual), words), []).append(named(column, place))
     given, assumed = (
         [", ".join(names) + words for (is_assumed, words), names in alike.items() if is_assumed is which]
         for which in (False, True)

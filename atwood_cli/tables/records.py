@@ -6,13 +6,17 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import suppress
 from io import StringIO
 from itertools import islice
+from typing import NamedTuple
 
-from ..numbers.text import counted
+from ..numbers.text import counted, without_blanks
 from .sources import LONGEST_RECORD, Unreadable
 
 SEPARATORS = ",\t;"
 MOST_ABOVE = 40
 """The most rows of titles above the headings."""
+MOST_HEADS = 2
+"""The most rows of headings."""
+LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d+(?!\d|st|nd|rd|th)")
 QUOTATION = 'has a quotation mark that is left open or out of place; write it "like ""this"""'
 
 
@@ -44,24 +48,50 @@ def records_of(text: str, separator: str, line: int = 1) -> Iterator[tuple[int, 
         raise kind(f"the row that begins in line {line} {QUOTATION}") from None
 
 
-def find_header(text: str, known: Callable[[Sequence[str]], Collection[str]]) -> tuple[int, str, int]:
-    """Return how many headings of a table are ``known``, its separator, and the number of rows above them.
+class Layout(NamedTuple):
+    """The separator of a table, the rows above its headings, those of headings, and how many are known."""
 
-    The header is the first row with two known headings, or else one among several cells, or else with most
-    words, by the separator that makes most known headings, or else most words.
+    separator: str
+    above: int
+    heads: int
+    known: int = 0
+
+    def headings(self, rows: Sequence[Sequence[str]], width: int) -> list[str]:
+        """Return the headings in the first of these rows: cells below each other are one."""
+        padded = ([*row, *[""] * width][:width] for row in rows[self.above : self.above + self.heads])
+        return [without_blanks(" ".join(cells)) for cells in zip(*padded, strict=True)] or [""] * width
+
+
+def find_header(
+    text: str, known: Callable[[Sequence[str]], Collection[str]], decisive: Collection[int] = ()
+) -> Layout:
+    """Find the headings of a table, and its separator, by which most are known, or else are words.
+
+    The header is the first row with two that are ``known``, or else one among several cells, or else with
+    most words. With ``decisive`` columns, the rows above the first number there are headings, perhaps none.
     """
     csv.field_size_limit(LONGEST_RECORD)
-    headers: list[tuple[tuple[int, int, int], int, str, int]] = []
+    lines = [line for line in islice(StringIO(text), MOST_ABOVE) if line.strip()]
+    usual = next((x for x in ";\t" if 2 * sum(x in line for line in lines) > len(lines)), ",")
+    if decisive:
+        rows = (cells for *_, cells in islice(records_of(text, usual), MOST_ABOVE) if any(cells))
+        for first, row in enumerate(rows):
+            if any(LIKE_NUMBER.match(row[x]) for x in decisive if x < len(row)):
+                above = max(first - MOST_HEADS, 0)
+                return Layout(usual, above, first - above)
+        raise GoesOn("it has no numbers in the columns that --columns reads")
+    headers: list[tuple[tuple[int, ...], Layout]] = []
     for separator in SEPARATORS:
         with suppress(csv.Error):
-            rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
-            for above, row in enumerate(islice(rows, MOST_ABOVE + 1)):
+            table = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
+            for above, row in enumerate(islice(table, MOST_ABOVE + 1)):
                 count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
                 is_known = count > 1 or sum(map(bool, row)) > 1  # a title may have the name of a quantity
-                headers.append(((count if is_known else 0, words, len(row)), count, separator, above))
+                rank = count if is_known else 0, words, separator == usual, len(row)
+                headers.append((rank, Layout(separator, above, 1 if words else 0, count)))
                 if count > 1:
                     break
-    return max(headers, key=lambda header: header[0], default=(0, 0, SEPARATORS[0], 0))[1:]
+    return max(headers, key=lambda header: header[0], default=((), Layout(SEPARATORS[0], 0, 1)))[1]
 
 
 def wrong_width(cells: int, width: int, separator: str) -> str:

@@ -1,17 +1,27 @@
 """A table as spreadsheets, people and Python have it: its headings found, its cells as texts."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from contextlib import ExitStack
 from functools import partial
 from os import PathLike, fspath
 from typing import IO, Any, NamedTuple
 
-from ..numbers.text import in_quotes, without_blanks
+from ..numbers.text import in_quotes
 from .cells import OWN_UNIT
-from .headings import ABOVE, Vocabulary, recognised, units_in
+from .headings import (
+    ABOVE,
+    NOTHING_SAID,
+    Heading,
+    Naming,
+    Vocabulary,
+    may_be_mass,
+    recognised,
+    unit_within,
+    units_in,
+)
 from .packages import MOST_BYTES
-from .records import find_header, records_of, wrong_width
+from .records import LIKE_NUMBER, Layout, find_header, records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
 from .workbooks import opened_table
 
@@ -28,8 +38,21 @@ class Sheet(NamedTuple):
     separator: str = ""
     remarks: Sequence[str] = ()
 
+    @property
+    def numbers(self) -> list[int]:
+        """Return the numbers of rows as the first column has them; none if it has others, or a mass."""
+        cells, column = [row[0].strip() for row in self.rows], self.columns[0]
+        is_quantity = may_be_mass(column) or unit_within(column, Heading(0, column, "m1"))
+        if is_quantity or not all(re.fullmatch("[0-9]{1,9}", cell) for cell in cells):
+            return []
+        numbers = [*map(int, cells)]
+        return numbers if numbers == sorted({*numbers}) else []
 
-def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str], name: str | None = None) -> Sheet:
+    def has_numbers(self, place: int) -> bool:
+        return any(LIKE_NUMBER.match(row[place]) for row in self.rows)
+
+
+def sheet_of(source: Any, vocabulary: Vocabulary, naming: Naming, name: str | None = None) -> Sheet:
     """Read a file by its path, stdin by "-", a mapping or a data frame as texts. Raises Unreadable.
 
     ``name`` is that of a sheet, in a workbook.
@@ -38,7 +61,7 @@ def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str], name
         with ExitStack() as stack:
             file, remarks = opened_table(fspath(source), name, stack)
             text = _content(file, remarks)
-        sheet = read_sheet(text, vocabulary, named)
+        sheet = read_sheet(text, vocabulary, naming)
         return sheet._replace(remarks=[*remarks, *sheet.remarks])
     columns: list[tuple[str, list[str]]] = []
     for heading, cells in _columns(source):
@@ -93,6 +116,15 @@ def units_in_cells(sheet: Sheet) -> Sheet:
     return sheet._replace(rows=rows, remarks=["units in the row below the headings", *sheet.remarks])
 
 
+def filled_down(sheet: Sheet, places: Collection[int]) -> Sheet:
+    """Return a table whose blank cells in these places have what stands above, as merged cells do."""
+    rows, above = list[list[str]](), [""] * len(sheet.columns)
+    for row in sheet.rows:
+        above = [above[i] if i in places and not cell.strip() else cell for i, cell in enumerate(row)]
+        rows.append(above)
+    return sheet._replace(rows=rows)
+
+
 def _content(file: IO[bytes], remarks: list[str]) -> str:
     """Return the text of a small file, and add how it was read to the remarks. Raises Unreadable."""
     content = b""
@@ -103,37 +135,41 @@ def _content(file: IO[bytes], remarks: list[str]) -> str:
     return content.decode("utf-8-sig")
 
 
-def read_sheet(text: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
+def read_sheet(text: str, vocabulary: Vocabulary, naming: Naming = NOTHING_SAID) -> Sheet:
     """Return the table in a text, without blank rows; each row has as many cells as there are headings.
 
     The separator is that by which most headings are known. Raises Unreadable.
     """
     remarks: list[str] = []
-    known = partial(recognised, vocabulary=vocabulary, named=named)
+    known = partial(recognised, vocabulary=vocabulary, named=naming.named)
     text = re.sub(r'\A"?sep=[,;\t]"?\n', "", text.replace("\r\n", "\n"), flags=re.IGNORECASE)
     lines = text.split("\n")
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = re.sub(r"^\s*#[# \t]*(?![,;])", "", lines[i])  # NumPy writes headings so; # may be one, too
         is_first = not "".join(lines[:i]).strip()
-        is_header = is_first and find_header(bare, known)[0] > 1
+        is_header = is_first and find_header(bare, known).known > 1
         lines[i] = bare if is_header else ""
         if not is_header and COMMENTS not in remarks:
             remarks.append(COMMENTS)
     text = "\n".join(lines)
-    _, separator, start = find_header(text, known)
-    if start:
+    layout = find_header(text, known, naming.decisive)
+    if layout.above:
         remarks.append(ABOVE)
-    return Sheet(*_rows(text, separator, start), separator, remarks)
+    return Sheet(*_rows(text, layout, naming), layout.separator, remarks)
 
 
-def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[str]]]:
-    """Return the headings in that row of a text, and the rows below. Raises Unreadable."""
-    columns, *rows = [cells for *_, cells in records_of(text, separator) if any(cells)][start:] or [[]]
-    if not columns:
+def _rows(text: str, layout: Layout, naming: Naming) -> tuple[list[str], list[list[str]]]:
+    """Return the headings in a text, and the rows below. Raises Unreadable."""
+    first = layout.above + layout.heads
+    records = [cells for *_, cells in records_of(text, layout.separator) if any(cells)]
+    rows = [row for row in records[first:] if "".join(row).strip()]
+    by_heading = layout.heads and not naming.decisive
+    width = max(map(len, records[layout.above : first] if by_heading else records), default=0)
+    if not width:
         raise Unreadable("it is empty")
-    rows = [row for row in rows if "".join(row).strip()]
+    columns = layout.headings(records, width)
     for number, row in enumerate(rows, 1):
-        if any(map(str.strip, [*columns[len(row) :], *row[len(columns) :]])):
-            raise Unreadable(f"row {number} {wrong_width(len(row), len(columns), separator)}")
-        row[len(columns) :] = [""] * (len(columns) - len(row))
-    return [*map(without_blanks, columns)], rows
+        if any(map(str.strip, row[width:])) or (by_heading and any(map(str.strip, columns[len(row) :]))):
+            raise Unreadable(f"row {number} {wrong_width(len(row), width, layout.separator)}")
+        row[width:] = [""] * (width - len(row))
+    return columns, rows

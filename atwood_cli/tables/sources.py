@@ -49,11 +49,7 @@ FOREIGN_TO_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit r
 
 
 class Unreadable(Exception):
-    """A table cannot be read; the message says why. ``options`` may help, words for a user of the command."""
-
-    def __init__(self, why: str, options: str = "") -> None:
-        super().__init__(why)
-        self.options = options
+    """A table cannot be read; the message says why."""
 
 
 def read_format(given: str | None, path: str) -> str:
@@ -111,7 +107,7 @@ def opened(source: str, stack: ExitStack) -> IO[bytes]:
 def cannot_read(source: str, why: Unreadable) -> OSError:
     """Return the error for a file, or stdin, that is no table."""
     name = "stdin" if source == STDIN else shortened(source, LONGEST_NAME)
-    return OSError(f"cannot read {name}: {why}{why.options}")
+    return OSError(f"cannot read {name}: {why}")
 
 
 def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
