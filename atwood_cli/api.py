@@ -55,8 +55,8 @@ class Solution(Generic[T]):
     __doc__ = f"""The state of a scene: floats, or Decimals if digits were asked for; None if undetermined.
 
     ``scene`` has the inputs, exact and in SI units; `solve` takes its fields but ``motion`` and ``terms``
-    again. ``regime`` is "no-slip", "verge" or "slip". ``notes`` give the reasons for the regime, and for each
-    value that is None. ``uncertainty`` has the standard uncertainty of every quantity by name, to at most 15
+    again. ``regime`` is "no-slip", "verge" or "slip". ``notes`` give the reasons for it, and for each field
+    that is None. ``uncertainty`` has the standard uncertainty of every quantity by name, to at most 15
     digits, and is empty if all inputs are exact; an uncertainty is None, with a note, if the value is missing
     with an input an uncertainty off. Each field is computed when it is first read.
 
@@ -70,7 +70,7 @@ class Solution(Generic[T]):
 
     scene: Scene
     notes: tuple[str, ...]
-    regime: Regime
+    regime: Regime | None
     acceleration: T | None
     tension_1: T | None
     tension_2: T | None

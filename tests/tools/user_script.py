@@ -30,7 +30,7 @@ assert_type(solve(m1=1, m2=3, M=10, a=None, drop=1, time=None), Solution[float])
 
 numbers: dict[str, float] = {"m1": 1.0, "m2": 3.0, "M": 10.0}
 texts: dict[str, str | None] = {"m1": "250g", "m2": "3", "mu": None}
-assert_type(solve(**numbers).regime, Literal["no-slip", "verge", "slip"])
+assert_type(solve(**numbers).regime, Literal["no-slip", "verge", "slip"] | None)
 assert_type(solve(**texts).uncertainty, Mapping[str, Any | None])
 with suppress(TypeError):
     solve(m1=1, m2=3, mas=10)  # type: ignore[call-overload]
