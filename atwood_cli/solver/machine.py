@@ -83,6 +83,11 @@ class Machine(Generic[N]):
         reason = quantities.FIXED_END if self.decided.one_mass_is_0 else quantities.NEEDS_MU
         return self._given(self.scene.mu, reason)
 
+    @property
+    def c(self) -> N:
+        """The pulley's inertia as a mass at its rim (kg)."""
+        return self._given(self.decided.rim_mass, quantities.NEEDS_M)
+
     def _capstan_ratio_minus_1(self, given: Fraction | None, mu: N) -> N:
         """Return e^{μφ} - 1, exactly 0 without friction."""
         return self.ar.number(0) if is_zero(given) else self.ar.expm1(mu * self.phi)
@@ -143,7 +148,7 @@ class Machine(Generic[N]):
         else:
             drive = physics.drive(l, h, self.b)
             drive = drive if decided.slows_down else self.ar.taken_as_not_negative(drive)
-            load = physics.load(l, h, self._given(decided.rim_mass, quantities.NEEDS_M))
+            load = physics.load(l, h, self.c)
         return physics.acceleration(drive, load, self.g)
 
     @lazy
@@ -224,8 +229,7 @@ class Machine(Generic[N]):
             a = self.magnitude if decided.is_driven else self.ar.number(0)
             difference = physics.difference_of_moving_masses(self.l, self.h, a, self.g)
             return self.ar.taken_as_not_negative(difference)
-        c = self._given(decided.rim_mass, quantities.NEEDS_M)
-        return physics.difference_of_a_pulley(c, self.magnitude, self.f)
+        return physics.difference_of_a_pulley(self.c, self.magnitude, self.f)
 
     @lazy
     def tension_difference(self) -> N:
@@ -366,8 +370,7 @@ class Machine(Generic[N]):
         self._check_grips()
         if self.decided.rim_at_rest:
             return self.ar.number(0)
-        c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
-        return physics.rim_acceleration(self.difference, c, self.f) * self.decided.heavier_side
+        return physics.rim_acceleration(self.difference, self.c, self.f) * self.decided.heavier_side
 
     @lazy
     def angular_acceleration(self) -> N:
@@ -402,10 +405,8 @@ class Machine(Generic[N]):
             raise Undetermined(quantities.ONE_SIDED)
         if self.decided.locked:
             raise Undetermined(quantities.LOCKED_AXLE)
-        if self.decided.regime == "verge":
-            mass = self.critical_pulley_mass
-        else:
-            mass = self._given(self.decided.pulley_mass, quantities.NEEDS_M)
+        on_verge, given = self.decided.regime == "verge", self.decided.pulley_mass
+        mass = self.critical_pulley_mass if on_verge else self._given(given, quantities.NEEDS_M)
         return physics.axle_force(self.tension_1, self.tension_2, mass, self.g)
 
     @lazy
@@ -426,7 +427,7 @@ class Machine(Generic[N]):
         friction_mass = self.friction_mass
         if self.decided.slips_at_rest:
             return self.least_heavier_mass
-        c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
+        c = self.c
         if self.decided.pulley_is_ideal or not self.decided.slips_at("heaviest"):
             raise Undetermined(quantities.NO_CRITICAL_HEAVIER_MASS)
         return physics.critical_heavier_mass(self.l, c, friction_mass, self.b)
@@ -440,10 +441,9 @@ class Machine(Generic[N]):
             return physics.mass_of_tension(least, self.magnitude, self.g)
         if self.decided.pulley_at_rest_until_it_slips:
             return physics.lighter_mass_at_rest(h, self.capstan_ratio)
-        c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
         if self.decided.pulley_is_ideal:
             return self.ar.number(0)
-        return physics.critical_lighter_mass(h, c, k_minus_1, self.b)
+        return physics.critical_lighter_mass(h, self.c, k_minus_1, self.b)
 
     @lazy
     def least_heavier_mass(self) -> N:
@@ -497,8 +497,7 @@ class Machine(Generic[N]):
 
     def drive_force_against(self, direction: int) -> N:
         """Return the drive (N) of a pulley that turns with m2 downwards (1) or upwards (-1); (3) with it."""
-        c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
-        turns = physics.difference_of_a_pulley(c, self.acceleration, self.f * direction)
+        turns = physics.difference_of_a_pulley(self.c, self.acceleration, self.f * direction)
         return turns - self.tension_difference
 
     @property
@@ -546,10 +545,8 @@ class Machine(Generic[N]):
         energy = physics.kinetic_energy(self.l + self.h, a, self.drop)
         if self.decided.regime == "slip" and self.decided.rim_at_rest:
             return energy
-        if self.decided.regime == "verge":
-            c = self.critical_pulley_mass * self._given(self.decided.beta, quantities.NEEDS_M)
-        else:
-            c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
+        on_verge, beta = self.decided.regime == "verge", self.decided.beta
+        c = self.critical_pulley_mass * self._given(beta, quantities.NEEDS_M) if on_verge else self.c
         return energy + physics.kinetic_energy(c, self._of_rim(a), rim_distance)
 
     def _of_rim(self, motion: N) -> N:
