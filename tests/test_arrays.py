@@ -491,7 +491,7 @@ def test_quantities_by_their_symbols_have_their_names(words: Any) -> None:
         ({"accuracy": "best"}, "accuracy 'best' is not an accuracy; there are certified, exact"),
         (
             {"quantities": ["tension"]},
-            "quantities 'tension' is not a quantity; did you mean tension_1 or tension_2 or tension_ratio?",
+            "quantities 'tension' is not a quantity; did you mean tension_1 or tension_2 or tension_difference?",
         ),
         ({"quantities": "a,t1"}, "quantities 't1' is not a quantity; did you mean tension_1?"),
         ({"quantities": [["torque"]]}, r"quantities .*torque.* is not a quantity.*"),
