@@ -376,6 +376,8 @@ def test_ndjson_has_names() -> None:
     why = "--columns takes columns in their order; those of NDJSON have names"
     ran = called("batch - --from ndjson --columns m1,m2".split(), b'{"m1":1,"m2":2}\n')
     assert ran == (2, "", f"atwood: {why}\n")
+    why = "--columns 'm1+,m2' fills blank cells by +, which are not given in a table of scenes"
+    assert called("batch - --columns m1+,m2".split(), b"1,2\n,3\n") == (2, "", f"atwood: {why}\n")
 
 
 def test_uncertainties_by_place(read: Any) -> None:

@@ -124,6 +124,10 @@ def batch(
     shared = {name: value for name, value in given.items() if value not in (None, OPEN)}
     rounded_to = None if digits is None else read_whole("digits", digits, 1, 17)
     naming = read_naming(columns or "", column or (), label or (), VOCABULARY)
+    if naming.filled:
+        raise SceneError(
+            "columns", columns, "fills blank cells by +, which are not given in a table of scenes"
+        )
     wanted = Wanted(asked or STANDARD, naming, conditions, shared, rounded_to)
     job = Job(table, kind, output, force, wanted, sheet, markdown)
     tally = TableTally(asked, conditions)
