@@ -23,7 +23,7 @@ from .quantities import Undetermined
 from .scene import DRIVE, FALL, INPUTS, MASSES, MEASURED, Input, Scene, SceneError, parameter_of
 
 MOTOR = "for a motor or a brake find the drive"
-IF_IT_SLOWS_DOWN = "for masses that slow down give a and --find axle"
+IF_IT_SLOWS_DOWN = "for masses that slow down give a and find axle"
 NOT_BELOW_0 = "must be above 0, unless a mass is found from it: then it is below 0 if m2 rises"
 
 
@@ -115,10 +115,8 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
             return "finds no M beside I, which is the pulley's inertia; leave I out"
         case "g" if g_given:
             pulley = "I" if M is None else "M"
-            return (
-                f"leaves nothing to find if both {pulley} and g are given; leave one of them out,"
-                " or ask for the axle's friction: --find axle"
-            )
+            nothing = f"leaves nothing to find if both {pulley} and g are given"
+            return f"{nothing}; leave one of them out, or ask for the axle's friction: find axle"
         case "M" | "g" | "mu_k" if decided.heavier_side == 0:
             return f"says nothing about equal masses, which rest on any pulley; {IF_IT_SLOWS_DOWN}"
         case "mu_k" if not decided.light:
