@@ -298,6 +298,8 @@ def test_what_is_not_understood_is_asked_once(command: str, table: str, why: str
     assert (dict(pairwise(to_type)).get("--columns", ""), " ".join(missing)) == (columns, options)
     again = called(to_type, table.encode())
     assert again.status < 2
+    if "?" in to_type:
+        assert called(shlex.split(again.err.splitlines()[-1])[1:], table.encode()).status < 2
     assert ("first cells" in again.err) == ("?" in columns or bool(options))
     assert max(map(len, listing)) <= 80
 

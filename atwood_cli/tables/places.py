@@ -25,8 +25,8 @@ from .sources import Unreadable
 WIDTH, WIDEST_HEADING, FIRST_CELLS = 80, 26, 3
 UNIT_OF_CELL = re.compile(r"[\W\d]*(.*?)[)\]]?")
 """A cell, or what stands where units do: 150 g, (cm)."""
-A_NAMING = r""" --(?:columns?|label)[ =](?:'[^']*'|"[^"]*"|[^\s'"])+"""
-"""An option of a command line that says what columns are."""
+A_NAMING = r""" --(?:\w+ '\?'|(?:columns?|label)[ =](?:'[^']*'|"[^"]*"|[^\s'"])+)"""
+"""An option of a command line that says what columns are, or is open."""
 
 
 class NotUnderstood(Unreadable):
