@@ -87,7 +87,7 @@ def ends_nearby(answers: Answers) -> Iterator[tuple[str, str, Any]]:
 def doubts(answers: Answers) -> list[str]:
     """Say which decisions differ near the scene, and at which nearest end."""
     sentences: dict[str, str] = {}
-    if answers.decided.scene.lacking:
+    if answers.decided.lacking:
         return []
     for within, x, end in ends_nearby(answers):
         for what, name in DOUBTFUL.items():
@@ -218,7 +218,7 @@ def _what_holds(answers: Answers) -> str:
     decided = answers.decided
     if not decided.has_one_mass:
         return "Neither mass is given: `mu` and the wrap give the `capstan_ratio` alone."
-    [mass], [given] = decided.scene.lacking, {*MASSES} - {*decided.scene.lacking}
+    [mass], [given] = decided.lacking, {*MASSES} - {*decided.lacking}
     unit = answers.typed(given).unit
     answers = answers.in_units(dict.fromkeys(LIMITS_OF_ONE_MASS, unit) if unit.symbol else IN_SI)
     least, *most = (_say(answers, x) for x in LIMITS_OF_ONE_MASS if answers[x] is not None)
@@ -289,7 +289,7 @@ def remarks(answers: Answers) -> list[str]:
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
     sentences += [*_on_weights(answers), *on_units(answers), *_on_what_is_found(answers)]
-    if decided.scene.lacking:
+    if decided.lacking:
         return sentences
     mu_k = decided.scene.mu_k
     if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:

@@ -111,8 +111,7 @@ class Answers:
     def answer(self, name: str) -> Answer:
         """Return the value of a quantity, and why it is missing."""
         if name == "regime":
-            lacks = self.decided.scene.lacking
-            return Answer(None, NEEDS_MASSES) if lacks else Answer(self.decided.regime)
+            return Answer(None, NEEDS_MASSES) if self.decided.lacking else Answer(self.decided.regime)
         if name not in self._answers:
             self._answers[name] = Answer(*self._settled(self.quantity(name)))
         return self._answers[name]

@@ -63,7 +63,8 @@ class Decisions:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.motion = scene, scene.motion
-        self.has_one_mass = len(scene.lacking) == 1
+        self.lacking = scene.lacking
+        self.has_one_mass = len(self.lacking) == 1
         self.is_driven = scene.motion.finds == DRIVE
         """Whether a motor or a brake moves the pulley as was measured."""
         of_any_pulley = self.has_one_mass and scene.M is scene.I is None
@@ -79,7 +80,7 @@ class Decisions:
         """
         if self.motion.finds == "axle":
             return self.motion.direction
-        if self.scene.lacking:
+        if self.lacking:
             raise Undetermined(NEEDS_MASSES)
         if self.is_driven:
             a, g = self.motion.acceleration(1), self.scene.g
@@ -104,7 +105,7 @@ class Decisions:
     @property
     def one_mass_is_0(self) -> bool:
         """Whether one mass is 0; or below, as a mass that is found with an uncertain acceleration may be."""
-        return not self.scene.lacking and is_number(self.light) and self.light <= 0
+        return not self.lacking and is_number(self.light) and self.light <= 0
 
     @lazy
     def locked(self) -> bool:
@@ -154,7 +155,7 @@ class Decisions:
     @lazy
     def axle_holds(self) -> bool:
         """Whether the axle's friction holds unequal masses at rest, h - l <= b; not masses that slow down."""
-        if self.motion.finds in ("axle", DRIVE) or self.scene.lacking:
+        if self.motion.finds in ("axle", DRIVE) or self.lacking:
             return False
         return self.has_axle_friction and self.heavier_side != 0 and not self.moves_axle("difference")
 

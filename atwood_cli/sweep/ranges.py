@@ -346,4 +346,5 @@ def solve_rows(
         reasons = {name: answer.reason for name, answer in by_name.items() if answer.reason}
         decided, values = answers.decided, {name: answer.value for name, answer in by_name.items()}
         failures = failures_of(answers.in_units(IN_SI), conditions)
-        yield Row(place, answers["regime"], decided.mu_assumed, values, reasons, failures)
+        regime = None if decided.lacking else decided.regime
+        yield Row(place, regime, decided.mu_assumed, values, reasons, failures)
