@@ -12,13 +12,16 @@ import numpy as np
 import polars as pl
 
 from atwood_cli import REGIMES, solve, solve_arrays, solve_table
-from atwood_cli.solver.quantities import NAMES, QUANTITIES
-from atwood_cli.solver.scene import INPUTS
+from atwood_cli.solver.quantities import NAMES as EVERY_SCENE
+from atwood_cli.solver.quantities import QUANTITIES, TABLE_NAMES
+from atwood_cli.solver.scene import COLUMNS, FALL, INPUTS
 
 from .running import called
 from .scenes import Given
 
 Values = Mapping[str, Any]
+NAMES = [name for name in TABLE_NAMES if name not in COLUMNS]  # a height is a column that is given
+TABLE_INPUTS = [*INPUTS, "drop"]
 solve_any: Any = solve  # with inputs that are put together here
 
 
@@ -76,8 +79,9 @@ def of_json(*more: str) -> Callable[[Sequence[Given]], Iterator[Values]]:
 def of_sweeps(scenes: Sequence[Given]) -> Iterator[Values]:
     """The first row of two."""
     for given in scenes:
-        swept = given | {"m2": f"{given['m2']},{given['m1']}"}
-        yield next(results(of_csv(out_of("sweep", swept, "--csv", "--only", ",".join(NAMES)))))
+        both = {"m1", "m2"} <= given.keys()
+        swept = given | ({"m2": f"{given['m2']},{given['m1']}"} if both else {"mu": f"{given['mu']},1"})
+        yield next(results([given], of_csv(out_of("sweep", swept, "--csv", "--only", ",".join(NAMES)))))
 
 
 def of_contact(scenes: Sequence[Given]) -> Iterator[Values]:
@@ -89,28 +93,29 @@ def of_contact(scenes: Sequence[Given]) -> Iterator[Values]:
 
 def of_csv(text: str) -> Iterator[Values]:
     for row in csv.DictReader(io.StringIO(text)):
-        yield {x: cell if x == "regime" else float(cell) if cell else None for x, cell in row.items()}
+        yield {x: (cell if x == "regime" else float(cell)) if cell else None for x, cell in row.items()}
 
 
 def of_batch(scenes: Sequence[Given]) -> Iterator[Values]:
     table = io.StringIO()
-    writer = csv.DictWriter(table, INPUTS)
+    writer = csv.DictWriter(table, TABLE_INPUTS, extrasaction="ignore")
     writer.writeheader()
     writer.writerows(scenes)
     ran = called(["batch", "-", "--only", ",".join(NAMES)], table.getvalue().encode())
     assert "no errors" in ran.err, ran.err
-    return results(of_csv(ran.out))
+    return results(scenes, of_csv(ran.out))
 
 
 def of_table(scenes: Sequence[Given]) -> Iterator[Values]:
-    columns = {name: [float(given[name]) if name in given else None for given in scenes] for name in INPUTS}
-    frame = solve_table(pl.DataFrame(columns, schema=dict.fromkeys(INPUTS, pl.Float64)), NAMES)
-    return results(frame.iter_rows(named=True))
+    columns = {x: [float(given[x]) if x in given else None for given in scenes] for x in TABLE_INPUTS}
+    frame = solve_table(pl.DataFrame(columns, schema=dict.fromkeys(TABLE_INPUTS, pl.Float64)), NAMES)
+    return results(scenes, frame.iter_rows(named=True))
 
 
-def results(rows: Iterable[Values]) -> Iterator[Values]:
-    """Without the columns of inputs, m1 and so on."""
-    return ({name: row[name] for name in NAMES} for row in rows)
+def results(scenes: Sequence[Given], rows: Iterable[Values]) -> Iterator[Values]:
+    """Without the columns of inputs, m1 and so on; nothing of a fall by time or speed, which are no columns."""
+    for given, row in zip(scenes, rows, strict=False):
+        yield {x: row[x] for x in NAMES if x in EVERY_SCENE or not {"time", "speed"} & given.keys()}
 
 
 def of_arrays(accuracy: Any) -> Callable[[Sequence[Given]], Iterator[Values]]:
@@ -131,7 +136,8 @@ def columns_of(scenes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         name: np.ma.array(
             [float(given.get(name, 0)) for given in scenes], mask=[name not in given for given in scenes]
         )
-        for name in INPUTS
+        for name in COLUMNS
+        if name not in FALL or any(name in given for given in scenes)
     }
     for column in columns.values():
         column.flags.writeable = False

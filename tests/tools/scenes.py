@@ -198,7 +198,7 @@ def whole_range(rng: Random) -> Given:
 FAMILIES: dict[str, Callable[[Random], Given]] = {
     f.__name__: f for f in (ordinary, nearly_equal, light_pulley, near_critical, whole_range)
 }
-ON_AN_AXLE, MEASURED = " on an axle", " measured"
+ON_AN_AXLE, MEASURED, LACKING, FALLING = " on an axle", " measured", " without masses", " falling"
 
 
 def _vary(rng: Random, scene: Given) -> Given:
@@ -222,12 +222,27 @@ def _vary(rng: Random, scene: Given) -> Given:
 
 
 def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
-    """Scenes of a family, on an axle that rubs and in a measured motion if its name says so, or of a danger."""
-    rng, usual = Random(f"{family} {seed}"), family.removesuffix(MEASURED).removesuffix(ON_AN_AXLE)
+    """Scenes of a family, with what its name says: an axle that rubs, and one more thing; or of a danger."""
+    rng, usual = Random(f"{family} {seed}"), family
+    for more in (*VARIED, ON_AN_AXLE):
+        usual = usual.removesuffix(more)
     for _ in range(count):
         given = _vary(rng, FAMILIES[usual](rng)) if usual in FAMILIES else typed(DANGERS[family](rng))
         given = with_axle(rng, given) if ON_AN_AXLE in family else given
-        yield with_motion(rng, given) if family.endswith(MEASURED) else given
+        changed = [change(rng, given) for more, change in VARIED.items() if family.endswith(more)]
+        yield changed[0] if changed else given
+
+
+def without_masses(rng: Random, given: Given) -> Given:
+    """The scene with friction, and without a mass or both."""
+    lacking = rng.choice([["m1"], ["m2"], ["m1", "m2"]])
+    kept = {name: text for name, text in given.items() if name not in lacking}
+    return {"mu": repr(_log_uniform(rng, -3, 0.3))} | kept
+
+
+def falling(rng: Random, given: Given) -> Given:
+    """The scene with the height, the time or the speed of a fall."""
+    return given | {rng.choice(FALL): _text(rng, _log_uniform(rng, -3, 3))}
 
 
 def driven(rng: Random, given: Given) -> Given:
@@ -277,7 +292,7 @@ def with_motion(rng: Random, given: Given) -> Given:
     if signed and a and rng.random() < 0.2:  # the other one is an end that is fixed to the pulley
         sign, signed, free["m1"], free["m2"] = {"m1": -1, "m2": 1}[finds], False, "0", "0"
     if a is None or (a and not 1e-200 < abs(a) < 1e200):
-        return given | {rng.choice(FALL): _text(rng, _log_uniform(rng, -3, 3))}
+        return falling(rng, given)
     if a.denominator > 10**300 or rng.random() < 0.5:  # so that it can be typed
         context = Context(prec=40 if finds == "mu_k" else rng.choice([2, 17]), rounding=ROUND_DOWN)
         a = Fraction(context.divide(Decimal(a.numerator), Decimal(a.denominator)))
@@ -292,11 +307,15 @@ def with_motion(rng: Random, given: Given) -> Given:
     return free | {x: f"{value.numerator}/{value.denominator}" for x, value in measured.items()} | found
 
 
+VARIED = {MEASURED: with_motion, LACKING: without_masses, FALLING: falling}
+
+
 def as_doubles(given: Given) -> Given | None:
     """A scene whose numbers are the doubles nearest to those of this one; None if that is no such scene."""
     scene = read_scene(given)
     numbers = {x: getattr(scene, x) for x in INPUTS}
     numbers |= {"wrap": scene.wrap.number, "axle": Decisions(scene).axle_friction}
+    numbers |= {x: Fraction(given[x]) for x in FALL if x in given}
     try:
         row = {name: float(value) for name, value in numbers.items() if value is not None}
     except OverflowError:
