@@ -123,9 +123,12 @@ def taken_by(door: str, column: Any) -> str:
 def test_every_door_takes_missing_values_as_the_page_says() -> None:
     pd = pytest.importorskip("pandas")
     columns: dict[str, list[Any]] = {
-        "None": [[2.06, None], pl.Series([2.06, None])],
+        "None": [
+            [2.06, None],
+            pl.Series([2.06, None]),
+            *(pd.Series([2.06, pd.NA], dtype=kind) for kind in ("Float64", object)),
+        ],
         "masked": [np.ma.masked_less([2.06, 1.2], 2)],
-        "pd.NA": [pd.Series([2.06, pd.NA], dtype=kind) for kind in ("Float64", object)],
         "NaN in pandas": [pd.Series([2.06, nan])],
         "NaN elsewhere": [[2.06, nan], np.array([2.06, nan]), pl.Series([2.06, nan])],
         "text": [["2.06", word] for word in ("", "NA", "NULL", "null")],
