@@ -89,7 +89,7 @@ def above(text: str) -> Fraction:
 def rest(c: Claims, held: str, then: str, digits: int) -> None:
     assert below(held) <= c.b <= above(held)
     assert c.h - c.l <= min(c.b, Fraction(held))
-    if match := re.search(f"at least {NUMBER}(\\.$| is needed)", then):
+    if match := re.search(f"at least {NUMBER}(\\.$|;| is needed)", then):
         c.least_mu(match[1])
 
 
@@ -118,7 +118,8 @@ def slips(c: Claims, where: str, mu: str, least: str, kinetic: str, digits: int)
     c.least_mu(least)
 
 
-def assumed(c: Claims, where: str, least: str, digits: int) -> None:
+def assumed(c: Claims, where: str, least: str, locked: str, digits: int) -> None:
+    assert bool(locked) == (c.scene.M == inf)
     is_massless = c.scene.M is None and c.scene.I is None
     assert where.startswith("On a massless pulley") == is_massless
     c.least_mu(least, **({"pulley": Fraction(0)} if is_massless else {}))
@@ -217,7 +218,8 @@ SENTENCES: dict[str, Callable[..., None]] = {
         lambda c: c.l == 0 or c.expected(pulley=Fraction(0), mu=Fraction(0))["regime"] == "no-slip"
     ),
     r"No slip: the string's end is fixed to the pulley\.": claimed(lambda c: c.l == 0),
-    rf"Without mu, no slip is assumed\. (On a massless pulley, t|T)hat needs mu of at least {NUMBER}\.": assumed,
+    rf"Without mu, no slip is assumed\. (On a massless pulley, t|T)hat needs mu of at least {NUMBER}"
+    r"(; for a pulley without friction, give mu = 0)?\.": assumed,
     rf"No slip: mu = {NUMBER}, and at least {NUMBER} is needed\.": holds,
     rf"No slip on any pulley: the heavier mass is {NUMBER} kg, and only above {NUMBER} kg does a heavy enough pulley make the string slip\.": holds_on_any,
     r"No slip on any pulley, for any heavier mass that can be typed\.": claimed(

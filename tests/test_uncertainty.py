@@ -52,6 +52,7 @@ MEASURED = """
 m1=1 m2=2 a=1 g=9.8 inertia=0.5 axle=1 drop=1.7
 m1=1 m2=3 a=2 M=50 mu=0.3 g=9.8 axle=1 drop=1.7
 m1=1 m2=2 time=2 drop=1.7 g=9.8 R=0.3
+m1=1 m2=1.0005 a=-0.0001 M=1 g=9.8 find=axle
 """.strip().splitlines()
 
 
@@ -69,17 +70,18 @@ def drawn(rng: Random) -> dict[str, str]:
         number = re.fullmatch(r"([\d.e+-]+)( ?(?:Nm?|rad|turn))?", value)
         if number and float(number[1]) and rng.random() < 0.6:
             sizes = [rng.uniform(-9, -2), -3 if exact is measured else rng.uniform(-1.5, -0.1)]
-            u = float(number[1]) * 10 ** rng.choice(sizes)
+            u = abs(float(number[1])) * 10 ** rng.choice(sizes)
             typed[x] = f"{number[1]}±{u:.2g}{number[2] or ''}"
     return typed
 
 
 def ends_of(x: str, given: Mapping[str, Any], step: Fraction) -> dict[str, Any]:
     """What is given, with an input so much more, but not below 0, and mu_k at most mu."""
-    number = min(max(given[x].number + step, 0), given["mu"].number if x == "mu_k" else inf)
+    least, most = -inf if x == "a" else 0, given["mu"].number if x == "mu_k" else inf
+    number = min(max(given[x].number + step, least), most)
     there = {**given, x: given[x]._replace(number=number)}
-    least = min(given["mu_k"].number, number) if x == "mu" and "mu_k" in given else None
-    return there if least is None else {**there, "mu_k": given["mu_k"]._replace(number=least)}
+    mu_k = min(given["mu_k"].number, number) if x == "mu" and "mu_k" in given else None
+    return there if mu_k is None else {**there, "mu_k": given["mu_k"]._replace(number=mu_k)}
 
 
 def as_typed(read: Input) -> Any:
@@ -89,7 +91,8 @@ def as_typed(read: Input) -> Any:
 
 
 def solved(given: Mapping[str, Any]) -> Any:
-    return solve(**{x: as_typed(read) for x, read in given.items()}, digits=70)
+    finds: Any = {"find": given["find"].given} if "find" in given else {}
+    return solve(**{x: as_typed(read) for x, read in given.items() if x != "find"}, **finds, digits=70)
 
 
 def solved_if_valid(given: Mapping[str, Any]) -> Any:
@@ -106,7 +109,9 @@ def test_an_uncertainty_is_made_of_steps_that_solve_makes() -> None:
         context.prec = 100
         for _ in range(many(160)):
             typed = drawn(rng)
-            read = {x: read_input(x, value) for x, value in typed.items()}
+            read = {
+                x: Input(given=value) if x == "find" else read_input(x, value) for x, value in typed.items()
+            }
             here, found = solved(read), solve(**typed, digits=15)
             ends = {}
             for x, one in read.items():

@@ -25,7 +25,7 @@ from ..reading.units import MAX_MAGNITUDE
 from ..solver.answers import ABOVE_DOUBLES, BELOW_DOUBLES, Answers
 from ..solver.physics import critical_heavier_mass
 from ..solver.quantities import FROM_MOTION, LIMITS_OF_ONE_MASS, NAMES, QUANTITIES
-from ..solver.scene import DRIVE, IN_SI, MASSES, Unit, with_unit
+from ..solver.scene import DRIVE, IN_SI, INPUTS, MASSES, Unit, with_unit
 from .given import as_given, label
 
 
@@ -99,7 +99,17 @@ def doubts(answers: Answers) -> list[str]:
                     " Results use the inputs as given.",
                 )
                 break  # others follow from it
-    return [*sentences.values()]
+    return [*sentences.values(), *_found_below_0(answers)]
+
+
+def _found_below_0(answers: Answers) -> Iterator[str]:
+    """Say at which ends an input that is found would be below 0."""
+    if (finds := answers.decided.motion.finds) in INPUTS:
+        found = FROM_MOTION[finds][0]
+        for x, end in ((x, end) for x, pair in answers.ends_at(1).items() for end in pair):
+            if (end.answer(found).value or 0) < 0:
+                at = _at(answers, x, end.input)
+                yield f"{found} would be below 0 at {at}; uncertainties count that all the same."
 
 
 def without_uncertainty(answers: Answers, names: Iterable[str]) -> list[str]:
@@ -238,7 +248,8 @@ def _grips(answers: Answers) -> str:
     if scene.mu is None:
         no_mass = scene.M is None and scene.I is None and not (decided.axle_holds or decided.is_driven)
         that = "On a massless pulley, that" if no_mass else "That"
-        return f"Without `mu`, no slip is assumed. {that} needs `mu` of at least {_enough(answers)}."
+        slides = "; for a pulley without friction, give `mu` = 0" if decided.locked else ""
+        return f"Without `mu`, no slip is assumed. {that} needs `mu` of at least {_enough(answers)}{slides}."
     return f"No slip: `mu` = {as_typed(scene.mu)}, and at least {_enough(answers)} is needed."
 
 
@@ -351,6 +362,10 @@ def on_units(answers: Answers) -> list[str]:
     if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
         typed = as_typed(wrap.number)
         sentences.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
+    axle = answers.typed("axle")
+    if scene.R is not None and axle.number and not axle.unit.symbol:
+        typed = as_typed(axle.number)
+        sentences.append(f"`axle` is read as a force, {typed} N; a torque is {typed}Nm.")
     weights = [x for x, _ in scene.terms if x in MASSES]
     bare = [x for x in MASSES if x not in (*weights, scene.motion.finds) and not answers.typed(x).unit.symbol]
     for x in bare if weights else ():

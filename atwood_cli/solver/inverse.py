@@ -42,8 +42,7 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
         raise SceneError(excess[0], inputs[excess[0]].given, rule)
     name = "a" if "a" in given else fall[-1]
     finds = _unknown(inputs, find) if is_measured else None
-    scene = Scene.of(inputs, finds, may_lack=not is_measured)
-    scene = scene._replace(motion=scene.motion._replace(direction=_direction(scene)))
+    scene = directed(Scene.of(inputs, finds, may_lack=not is_measured))
     m2_may_rise = "a" not in given and (finds == DRIVE or (finds in MASSES and 0 not in (scene.m1, scene.m2)))
     if below_0 := [x for x in fall if getattr(scene.motion, x) < 0 and not m2_may_rise]:
         raise SceneError(below_0[0], inputs[below_0[0]].given, NOT_BELOW_0)
@@ -79,6 +78,11 @@ def _unknown(inputs: Mapping[str, Input], find: str | None) -> str:
     return "mu_k" if slides else "g" if has_pulley else "M"
 
 
+def directed(scene: Scene) -> Scene:
+    """Return the scene with the direction of its motion."""
+    return scene._replace(motion=scene.motion._replace(direction=_direction(scene)))
+
+
 def _direction(scene: Scene) -> int:
     """Return the direction of a motion that the masses do not tell, as `Motion` has it."""
     finds, a = scene.motion.finds, scene.motion.a
@@ -107,8 +111,6 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
             return "is that of a pulley, which M = inf locks; leave M out, or give its mass"
         case "axle" if M == inf:
             return "says nothing about the axle of a locked pulley; leave M out"
-        case "axle" if decided.heavier_side == 0:
-            return "says nothing about the axle: equal masses that begin at rest stay there on any"
         case "mu_k" if M != inf and (mu is None or M is I is None):
             return "finds mu_k only if the string slips: give M = inf, or M and mu"
         case "M" if I is not None:
@@ -162,6 +164,8 @@ def found_inputs(scene: Scene) -> dict[str, Any]:
     decided: Any = Decisions(scene)  # about the pulley, as a mass may be missing
     c, f, b = decided.rim_mass, decided.axle_friction, decided.axle_mass
     a = scene.motion.acceleration({"m2": 1, "m1": -1}.get(finds) or decided.heavier_side)
+    if finds == "axle" and decided.heavier_side == 0:
+        raise Undetermined("says nothing about the axle: equal masses that begin at rest stay there on any")
     is_braked = finds == "axle" or (finds == DRIVE and decided.light > 0)
     if finds != "g" and (a >= g or (is_braked and -a >= g)):
         fall = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(abs(a))))

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 from ..numbers.digits import Rounding, half_range, is_infinite, to_digits, to_double
 from ..numbers.interval import ZERO, decimal_context
 from .answers import TOO_SMALL, Answer, Answers
-from .inverse import found_inputs
+from .inverse import directed, found_inputs
 from .quantities import Undetermined
 from .scene import parameter_of
 
@@ -87,7 +87,9 @@ class UncertainAnswers(Answers):
             if not (number or may_be_zero):
                 return End(number, None, NO_SCENE)
         try:
-            scene = scene.with_number(x, number)
+            at_end = scene.with_number(x, number)
+            # Equal masses slow down, which tells the direction of their motion: that is kept.
+            scene = at_end if scene.m1 == scene.m2 else directed(at_end)
             if x == "mu" and scene.mu_k is not None:
                 scene = scene._replace(mu_k=min(scene.mu_k, number))  # it is at most mu
             moved = scene._replace(**found_inputs(scene))
