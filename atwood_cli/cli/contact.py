@@ -38,7 +38,7 @@ def contact(
         option(
             "Arc",
             metavar="N",
-            help=f"Angles along the arc to show, with both ends; {balance.USUAL_POINTS} if not given.",
+            help=f"Angles of the arc, 2 to {balance.MAX_POINTS}; {balance.USUAL_POINTS} if not given.",
         ),
     ] = None,
     digits: Digits = None,

@@ -15,6 +15,7 @@ import typer
 from ..output.files import STDOUT, check_free, printable
 from ..output.forms import FORMS, Destination, Picture
 from ..output.text import say
+from ..reading.units import MAX_DIGITS
 from ..solver.quantities import NAMES, QUANTITIES
 from ..solver.scene import FALL as FALLS
 from ..solver.scene import INPUTS, MEASURED, SceneError, parameter_of
@@ -167,7 +168,10 @@ def quantity_meanings() -> Mapping[str, str]:
 # Options of several commands
 
 Digits = Annotated[
-    str | None, option("Output", metavar="N", help="Significant digits; 6 in tables, doubles elsewhere.")
+    str | None,
+    option(
+        "Output", metavar="N", help=f"Significant digits, 1 to {MAX_DIGITS}; 6 in tables, doubles elsewhere."
+    ),
 ]
 Columns = Annotated[
     list[str] | None,

@@ -17,7 +17,8 @@ from .options import COULD_NOT, DONE, FALL, FIGURE, OUTPUT, SCENE, Columns, Digi
 
 HELP = """Solve a range or a list of scenes.
 
-One or two options carry start:stop:count[:log], or a list, as 0,1,10; two make all combinations.
+One or two options carry start:stop:count[:log], or a list, as 0,1,10; two make all combinations, at most
+a million.
 
 \b
 Examples:
