@@ -84,7 +84,7 @@ Cells become doubles in SI units; solve reads 0.1 as exactly 1/10, so last digit
 unit or radians in a cell is solved by itself, exactly as typed.
 
 The usual seven results are {", ".join(STANDARD)}.
-The exit status is 1 if a row has an error, if a quantity that --only names has no value in any row, or
+The exit status is 1 if a row has an error, if a quantity that --only names has no value in any solved row, or
 if there is no row or one that does not meet what is expected. In NDJSON a bad line is a bad row.
 """
 

@@ -21,7 +21,7 @@ from ..reading.units import OTHER_TERMS, Malformed, dimension_of, read_number
 from ..solver.answers import TOO_SMALL, Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import NO_NEED, QUANTITIES, REGIMES, Undetermined
-from ..solver.scene import INPUTS, NOT_GIVEN, Angle, Input, SceneError, with_unit
+from ..solver.scene import INPUTS, MEASURED, NOT_GIVEN, Angle, Input, SceneError, with_unit
 from .messages import ends_nearby, unmarked
 
 COMPARISON = re.compile("([^<>=]*)(<=|>=|==|<|>)([^<>=]*)")
@@ -37,6 +37,8 @@ MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 
 SIGNED = ("acceleration", "tension_difference", "torque", "rim_acceleration", "angular_acceleration")
 """The quantities with the sign of the motion."""
+COMPARED_TERMS = OTHER_TERMS | {measured.unit: measured.terms for measured in MEASURED.values()}
+"""The other terms in which a quantity may be compared, by its unit. Those of measurements may need R."""
 
 
 class Condition(NamedTuple):
@@ -58,7 +60,7 @@ def read_condition(typed: str) -> Condition:
     name = read_name("expect", word, QUANTITIES, "quantity", NAMES_BY_SYMBOL)
     unit = QUANTITIES[name].unit
     try:
-        bound = read_number(number, dimension_of(unit), OTHER_TERMS.get(unit, ()))
+        bound = read_number(number, dimension_of(unit), COMPARED_TERMS.get(unit, ()))
     except Malformed as error:
         raise SceneError("expect", typed, f"compares with {in_quotes(number)}, which {error}") from None
     if bound.uncertainty and sign != "==":
@@ -74,7 +76,9 @@ def failures_of(answers: Answers, conditions: Iterable[Condition]) -> dict[str, 
 
 def failure(answers: Answers, expected: Condition) -> str:
     """Say what holds instead of what is expected, "" if that holds."""
-    ends = [end.answers for _, _, end in ends_nearby(answers)]
+    ends, terms = [end.answers for _, _, end in ends_nearby(answers)], expected.bound.unit.terms
+    if terms and getattr(answers.decided.scene, terms.by) is None:
+        return f"expected {expected.typed}; {terms.words} needs {terms.by}"
     if not _holds(answers, expected):
         instead = unmarked(_instead(answers, expected))
     elif failing := [end for end in ends if not (end and _holds(end, expected))]:
