@@ -231,10 +231,11 @@ def _what_holds(answers: Answers) -> str:
     [mass], [given] = decided.lacking, {*MASSES} - {*decided.lacking}
     unit = answers.typed(given).unit
     answers = answers.in_units(dict.fromkeys(LIMITS_OF_ONE_MASS, unit) if unit.symbol else IN_SI)
-    least, *most = (_say(answers, x) for x in LIMITS_OF_ONE_MASS if answers[x] is not None)
-    holds = f"from {least} to {most[0]}" if most else f"at least {least}"
+    ends = zip(("least", "most"), LIMITS_OF_ONE_MASS, strict=True)
+    holds = " and ".join(f"at {end} {_say(answers, x)}" for end, x in ends if answers[x] not in (None, inf))
+    size = f"{holds} {unit.in_words or 'kg'}" if holds else "of any size that can be typed"
     on = "" if decided.pulley_known else "on any pulley "
-    return f"`{mass}` is not given: {on}the string holds if `{mass}` is {holds} {unit.in_words or 'kg'}."
+    return f"`{mass}` is not given: {on}the string holds if `{mass}` is {size}."
 
 
 def _enough(answers: Answers, name: str = "mu_verge") -> str:
