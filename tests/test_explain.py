@@ -14,13 +14,13 @@ from hypothesis import strategies as st
 
 from atwood_cli.explain.derivation import Explanation, explain
 from atwood_cli.explain.equations import Derivation, Equation
-from atwood_cli.explain.given import inputs_in_words
+from atwood_cli.explain.given import WEIGHTS, inputs_in_words
 from atwood_cli.numbers.digits import is_infinite
 from atwood_cli.output.typeset import as_lines, as_markdown, chain, written
 from atwood_cli.reading.scenes import read_answers
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES, QUANTITIES
-from atwood_cli.solver.scene import INPUTS, MASSES, Scene
+from atwood_cli.solver.scene import INPUTS, Scene
 
 from .conftest import examples, many
 from .tools import oracle
@@ -171,9 +171,7 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     }
     known |= {"f_axle": decided.axle_friction}
     for x, terms in scene.terms:
-        known[f"{terms.symbol}{x[1:] if x in MASSES else ''}"] = scene.as_given(x) * (
-            decided.heavier_side if x == "a" else 1
-        )
+        known[WEIGHTS.get(x, terms.symbol)] = scene.as_given(x) * (decided.heavier_side if x == "a" else 1)
     env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}
     env |= {
         "π": +mp.pi,

@@ -295,9 +295,10 @@ def remarks(answers: Answers) -> list[str]:
     answers, sentences = answers.in_units(IN_SI), list[str]()
     decided = answers.decided
     if decided.beta is not None and decided.beta > 1:
-        shown = strip_zeros(_beside(answers, Fraction(1))(decided.beta))
+        rounded = format_number(strip_zeros(_beside(answers, Fraction(1))(decided.beta)))
+        shown = as_typed(decided.beta) if decided.scene.I is None else rounded
         sentences.append(
-            f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
+            f"The inertia factor `I/(M R^2)` is {shown}, above 1: some mass must lie outside"
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
     sentences += [*_on_weights(answers), *on_units(answers), *_on_what_is_found(answers)]

@@ -369,7 +369,7 @@ def with_friction(rng: Random, size: float = 1) -> Given:
     if "R" in words and words.get("M") not in ("0", "inf") and rng.random() < 0.3:
         words["I"] = f"{m1 * _log_uniform(rng, -3, 1):.3g}"
     elif rng.random() < 0.2:
-        words["inertia"] = rng.choice(["hoop", "1.5", "1.00000001"])
+        words["inertia"] = rng.choice(["hoop", "1.2345678", "1.00000001"])
     if rng.random() < 0.75:
         words["mu"] = rng.choice(["0", *[f"{_log_uniform(rng, -3, 0.2):.3g}"] * 5, "1e9"])
     return words
