@@ -65,7 +65,7 @@ OFFERED = {
     "s": "solve sweep",
     "solve --mu": "--mu --mu-k",
     "solve --m1 1 --m1 2 --cs": "--csv",
-    "solve --only ten": "tension_1 tension_2 tension_ratio",
+    "solve --only ten": "tension_1 tension_2 tension_difference tension_ratio",
     "solve --only fall": "fall_time",
     "sweep --only ": " ".join(NAMES),
     "batch in.csv --only reg": "regime",

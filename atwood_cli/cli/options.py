@@ -36,7 +36,7 @@ REMARKS = {
     "g": ", or a planet, moon or pluto; 9.80665 if not given",
     "inertia": ", or disk, cylinder, hoop, ring, sphere, shell; 0.5 if not given",
     "I": ", instead of inertia, or the radius of gyration, 18cm; needs R",
-    "wrap": ": degrees, 3rad, pi/2, 2.5turn, 90+90; 180 if not given",
+    "wrap": ": degrees, 3rad, pi/2, 2.5turn, 90+90; 180 if none",
     "axle": ", 15mN, or a torque, 0.4mNm (needs R)",
     "a": ", 0.3g, 5rad/s2: finds M, or a mass, g, mu_k",
     "drop": ": two of drop, time, speed stand for a, one gives the others",
@@ -169,9 +169,7 @@ def quantity_meanings() -> Mapping[str, str]:
 
 Digits = Annotated[
     str | None,
-    option(
-        "Output", metavar="N", help=f"Significant digits, 1 to {MAX_DIGITS}; 6 in tables, doubles elsewhere."
-    ),
+    option("Output", metavar="N", help=f"Significant digits, to {MAX_DIGITS}; 6 in tables, else doubles."),
 ]
 Columns = Annotated[
     list[str] | None,
