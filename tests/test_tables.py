@@ -220,6 +220,8 @@ UNCERTAIN = "error|u|± a|σ|Uncertainty (s)|SD|std dev (s)|dt (s)|Unsicherheit 
         ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", ": make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
         ("m1,m2,t\n.2,.21,3\nm1,m2,t\n.2,.22,2\n", "row 2 has headings of a second table; give it a file of its own"),
         ("m1,m2,t\n.2,.21,3\n,.22,2\n", "row 2: m1 is missing; write it in each row, or fill by m1+ in columns"),
+        ("Lauf,m1 (g),m2 (g),t\n1,90,95,2\n2,90,98,1.5\nmit Öl,,,\n1,90,95,1.9\n", "row 3 has words and no time, as a title has; give the rows below a file of their own, or, if it is a note, begin it with #"),
+        ("Lauf,m1 (g),m2 (g),t\n1,90,95,2\n2,90,98,1.5\nPlan B,80,,\n1,80,85,1.9\n", "row 3 has words and no time, as a title has"),
         *((f"m1,m2,t,{column}\n1,2,3,4\n", f"'{column}' may matter, and is not read") for column in UNCERTAIN),
     ],
 )  # fmt: skip
@@ -372,6 +374,15 @@ def test_words_that_contradict_a_table_are_refused(words: str, why: str) -> None
         "",
         f"atwood: {why}\n",
     )
+
+
+def test_a_title_within_the_rows_begins_other_runs(read: Any) -> None:
+    """Runs of two pulleys were taken as repeats. A note at the end, or a run that failed, is left out and named."""
+    table = "A (g),B (g),t,Note\n50,53,3,\n,,2.9,\nPlan B,,,\n50,53,2,\n"
+    with pytest.raises(Unreadable, match="row 3 has words and no time"):
+        read(table, words="m1:g+,m2:g+,t")
+    assert read(table.replace("Plan B,,,", "50,53,,jammed"), words="m1:g+,m2:g+,t").rows == [[1, 2, 4]]
+    assert read("Lauf,m1 (g),m2 (g),t\n1,50,53,3\n2,50,56,2\nmit Öl,,,\n").rows == [[1], [2]]
 
 
 def test_ndjson_has_names() -> None:

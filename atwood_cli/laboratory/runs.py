@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import shortened
 from ..solver.scene import MASSES, Input, SceneError
-from ..tables.cells import OWN_UNIT, read_cell
+from ..tables.cells import EMPTY, OWN_UNIT, has_unit, read_cell
 from ..tables.headings import NOTHING_SAID, Heading, Naming, named, read_as, refused
 from ..tables.records import LIKE_NUMBER
 from ..tables.sheets import Sheet, filled_down, sheet_of, units_in_cells
@@ -117,8 +117,10 @@ def read_runs(
     Rows ``without``, by their numbers, and their cells, as 8:t2, are left out. Raises Unreadable if it is no
     table of runs, SceneError for what does not fit the table.
     """
-    sheet = filled_down(units_in_cells(sheet_of(source, VOCABULARY, naming, sheet_name)), naming.filled)
+    sheet = units_in_cells(sheet_of(source, VOCABULARY, naming, sheet_name))
     columns = columns_of(sheet, naming, given)
+    _check_titles(sheet, columns)
+    sheet = filled_down(sheet, naming.filled)
     by = {x: given[x].number for x in ("R", "g") if x in given and not given[x].uncertainty}
     shared = {x: _in_own_terms(x, given[x], by) for x in (*MASSES, "hanger", "drop") if x in given}
     common = {x: float(read.uncertainty) for x, read in shared.items() if read.uncertainty and x != "drop"}
@@ -299,6 +301,22 @@ def _rows_by_words(sheet: Sheet, places: Iterable[int]) -> dict[int, str]:
             what = f"{named(sheet.columns[place], place)} has a word there, and most rows a number"
             why |= dict.fromkeys(words, what)
     return why
+
+
+def _check_titles(sheet: Sheet, columns: Columns) -> None:
+    """Raise Unreadable if a row between runs has words and no measurement: what follows repeats no run."""
+    by_words, used = _rows_by_words(sheet, columns.unread), list[int]()
+    for i, row in enumerate(sheet.rows):
+        numbers = [own.name in MEASURED for own in columns.headings if LIKE_NUMBER.match(row[own.place])]
+        if any(numbers) or (numbers and i not in by_words):
+            used.append(i)
+    between = {*range(used[0], used[-1])} - {*used} if used else ()
+    for i in sorted(between):
+        if any(has_unit(cell) and cell.strip() not in EMPTY for cell in sheet.rows[i]):
+            what = f"row {columns.numbers[i]} has words and no {MEASURED[columns.kind]}, as a title has"
+            raise Unreadable(
+                f"{what}; give the rows below a file of their own, or, if it is a note, begin it with #"
+            )
 
 
 def _rows_of(
