@@ -15,7 +15,7 @@ from .reading.names import input_meant
 from .reading.scenes import read_answers
 from .solver.answers import Answers
 from .solver.quantities import MEASURED_NAMES, QUANTITIES, STANDARD, Regime
-from .solver.scene import Given, Scene
+from .solver.scene import DRIVE, Given, Scene
 
 
 class Inputs(TypedDict, total=False):
@@ -247,7 +247,8 @@ def solve(m1: Mass = None, m2: Mass = None, *, digits: Any = None, **given: Unpa
     """
     for name in given.keys() - Inputs.__annotations__.keys():
         meant = input_meant(name)
-        hint = f"; did you mean {meant}?" if meant else nearest(name, Inputs.__annotations__)
+        is_found = "; a motion finds it, by find='drive'" if meant == DRIVE else f"; did you mean {meant}?"
+        hint = is_found if meant else nearest(name, Inputs.__annotations__)
         raise TypeError(f"solve() got an unexpected keyword argument {name!r}{hint}")
     inputs: dict[str, Any] = {"m1": m1, "m2": m2, **given}
     return Solution(read_answers(inputs, read_digits(digits)))

@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
+from itertools import product
 from math import inf
 from random import Random
 from typing import Any
@@ -12,10 +13,11 @@ from typing import Any
 import pytest
 
 from atwood_cli.explain.messages import notes, unmarked
+from atwood_cli.reading.scenes import read_answers
 from atwood_cli.solver import answers as answers_
 from atwood_cli.solver import quantities as reasons
 from atwood_cli.solver.answers import Answers
-from atwood_cli.solver.scene import Scene
+from atwood_cli.solver.scene import Motion, Scene
 
 from .conftest import many
 from .tools import oracle
@@ -228,6 +230,9 @@ SENTENCES: dict[str, Callable[..., None]] = {
     ),
     rf"The string slips if the heavier mass is between {NUMBER} and {NUMBER} kg\. .*": slips_between,
     r"A locked pulley .*, so axle has no effect\.": claimed(lambda c: c.b > 0 and c.scene.M == inf),
+    r"M is not given; a drum that does not turn is --M inf\.": claimed(
+        lambda c: c.scene.M is c.scene.I is None and c.scene.wrap.number >= 360
+    ),
     r"mu_k has no effect here, as the string does not slip\.": claimed(
         lambda c: c.regime(mu_k=None) == c.regime() != "slip"
     ),
@@ -325,3 +330,58 @@ def test_every_sentence_is_true(seed: int) -> None:
                 raise AssertionError(f"{words}, digits={digits}: {sentence}") from error
             said[match.re.pattern] += 1
     assert len(said) > 15, said
+
+
+def test_what_has_no_effect_changes_nothing_and_the_rest_does() -> None:
+    results, seen = ("capstan_ratio", *reasons.LIMITS_OF_ONE_MASS, "moment_of_inertia"), Counter[str]()
+    others = {"m2": ["3"], "M": ["10", "inf"], "R": ["0.1"], "axle": ["2", "0.2Nm"], "mu_k": ["0.2"]}
+    for typed in product(*([None, *values] for values in others.values())):
+        given = {x: word for x, word in zip(others, typed, strict=True) if word}
+        if given.get("axle") == "0.2Nm" and "R" not in given:
+            continue
+        words = {"mu": "0.3", "wrap": "200", **given}
+        answers = read_answers(words, None)
+        said = re.findall(r"Without effect on the .*: (.*)\.", "\n".join(notes(answers, [])))
+        idle = said[0].split(", ") if said else []
+        for x in given.keys() - {"m2"}:
+            less = {y: word for y, word in words.items() if y != x and not (x == "R" and "N" in word)}
+            there = read_answers(less, None)
+            same = all(answers[name] == there[name] for name in results)
+            # A locked pulley holds as any pulley does.
+            assert (x in idle) == same or (same and words[x] == "inf"), (words, x)
+            seen[f"{x} {x in idle}"] += 1
+    assert len(seen) == 7, seen  # mu_k never has an effect
+
+
+def test_the_least_friction_of_an_axle_holds_masses_at_rest_and_less_does_not() -> None:
+    rng = Random("at rest")
+    for _ in range(many(40)):
+        words = {x: str(rng.randint(1, 999)) for x in ("m1", "m2", "M")}
+        if words["m1"] == words["m2"]:
+            continue
+        answers = read_answers({**words, "a": "0", "find": "axle"}, None)
+        assert any("axle is the least friction that holds them" in one for one in notes(answers, []))
+        scene: Any = answers.decided.scene
+        moves = [
+            oracle.expected(scene._replace(axle=scene.axle * of, motion=Motion()))["acceleration"]
+            for of in (Fraction(1), Fraction(999, 1000))
+        ]
+        assert [moves[0] == 0, moves[1] == 0] == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("unit", "size"),
+    [("lb", Fraction("0.45359237")), ("N", 1 / Fraction("9.80665")), ("lbf", Fraction("0.45359237"))],
+)
+def test_a_mass_that_is_found_is_said_in_the_unit_of_the_other(unit: str, size: Fraction) -> None:
+    rng = Random(unit)
+    for _ in range(many(20)):
+        words = {
+            "m1": f"{rng.randint(1, 99)}{unit}",
+            "M": str(rng.randint(1, 9)),
+            "a": f"0.{rng.randint(10, 99)}",
+        }
+        answers = read_answers(words, None)
+        shown = oracle.correctly_rounded(oracle.measured(answers.decided.scene)[1].m2 / size, 6)
+        as_weight = "a weight of " if unit != "lb" else ""
+        assert f"m2 is {as_weight}{shown} {unit}." in notes(answers, ["m2"]), words

@@ -16,7 +16,7 @@ from ..numbers.text import LONGEST_NAME, shortened
 from ..output.text import drop, finish, naming_the_extra, say
 from ..reading.names import input_meant
 from ..solver.quantities import Undetermined
-from ..solver.scene import SceneError
+from ..solver.scene import DRIVE, SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_options
 
 COMMANDS = ("solve", "sweep", "contact", "fit", "batch", "quantities", "tradeoff")
@@ -157,6 +157,8 @@ def _why_not_understood(error: Any) -> str:
         having = [x for x in options if any(error.option_name in param.opts for param in options[x])]
         if having:
             message = f"No such option: {error.option_name}, which is for atwood {', '.join(having)}"
+        elif input_meant(error.option_name.strip(DASHES)) == DRIVE:
+            message = f"No such option: {error.option_name}; a motion finds it: atwood solve --find drive"
     if "extra argument" in message:
         message += ": names take commas, as a,T1; a value with a blank takes quotation marks, as '200 g'"
     return f"{message}{' See' if message.endswith('?') else '; see'} {hint}" if hint else message

@@ -26,7 +26,7 @@ from ..solver.answers import ABOVE_DOUBLES, BELOW_DOUBLES, Answers
 from ..solver.physics import critical_heavier_mass
 from ..solver.quantities import FROM_MOTION, LIMITS_OF_ONE_MASS, NAMES, QUANTITIES
 from ..solver.scene import DRIVE, IN_SI, INPUTS, MASSES, Unit, with_unit
-from .given import as_given, label
+from .given import as_given, inputs_in_words, label
 
 
 def unmarked(words: str) -> str:
@@ -142,14 +142,15 @@ def _at(answers: Answers, x: str, value: Fraction) -> str:
 
 LIMITS = {
     **dict.fromkeys(("critical_heavier_mass", "critical_lighter_mass", "least_heavier_mass"), MASSES),
+    **dict.fromkeys(MASSES, MASSES),
     "least_wrap": ("wrap",),
 }
-"""The limits of inputs, and those inputs."""
+"""The limits of inputs and the masses that are found, and the inputs that have their units."""
 USUAL_UNITS = ("", "kg", "g", "mg", "ug", "t", "deg", "°", "rad")
 
 
 def typed_units(answers: Answers) -> dict[str, Unit]:
-    """Return the units of limits that differ from the usual ones, as an input was given in them."""
+    """Return the units of limits and masses found that differ from the usual ones, as an input has them."""
     units = dict[str, Unit]()
     for limit, inputs in LIMITS.items():
         typed = (answers.typed(x).unit for x in inputs)
@@ -159,7 +160,7 @@ def typed_units(answers: Answers) -> dict[str, Unit]:
 
 
 def in_typed_units(answers: Answers, names: Sequence[str]) -> Iterator[str]:
-    """Say limits, as far as they are among the names, in the unit of an input that has an unusual one."""
+    """Say limits and masses found, if they are among the names, in the unusual unit of an input."""
     units = {name: unit for name, unit in typed_units(answers).items() if name not in answers.units}
     there = answers.in_units(units).to_six_digits
     for name in [name for name in names if name in units and answers[name]]:
@@ -289,6 +290,9 @@ LOW_GRAVITY, HIGH_GRAVITY = 9.7, 9.9
 LIKE_RADIANS = (0.3, 12.6)
 """The range of degrees that are probably radians, or turns: a short arc, but up to two turns in radians."""
 
+WHOLE_TURN = {"°": 360, "rad": 6.28}
+"""A wrap as people type it from which on the string is wound round, as on a drum."""
+
 
 def remarks(answers: Answers) -> list[str]:
     """Return further sentences on the scene, as far as they apply."""
@@ -303,7 +307,11 @@ def remarks(answers: Answers) -> list[str]:
         )
     sentences += [*_on_weights(answers), *on_units(answers), *_on_what_is_found(answers)]
     if decided.lacking:
-        return sentences
+        return [*sentences, *_without_effect(answers)]
+    is_wound = decided.scene.wrap.number >= WHOLE_TURN[decided.scene.wrap.unit]
+    is_open = decided.scene.M is decided.scene.I is None and decided.motion.finds is None
+    if is_wound and is_open and decided.regime != "verge":  # there the verdict says that
+        sentences.append("`M` is not given; a drum that does not turn is `--M inf`.")
     mu_k = decided.scene.mu_k
     if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:
         sentences.append("`mu_k` has no effect here, as the string does not slip.")
@@ -332,12 +340,29 @@ def remarks(answers: Answers) -> list[str]:
     return sentences
 
 
+def _without_effect(answers: Answers) -> Iterator[str]:
+    """Say which inputs have no part in what the page has without a mass."""
+    decided, scene = answers.decided, answers.decided.scene
+    used, wanted = {"mu", "wrap", "g"}, "`capstan_ratio`"
+    if answers["moment_of_inertia"] is not None:
+        used |= {"M", "inertia", "I", "R"}
+    if decided.has_one_mass:
+        used, wanted = {*used, *MASSES, "M", "inertia"}, f"limits of `{decided.lacking[0]}`"
+        if not decided.slips_by_tensions:
+            used |= {"axle", *(terms.by for _, terms in scene.terms)}
+    given = (x for x in inputs_in_words(answers) if answers.typed(x).given is not None)
+    if idle := [f"`{x}`" for x in given if x not in used]:
+        yield f"Without effect on the {wanted}: {', '.join(idle)}."
+
+
 def _on_what_is_found(answers: Answers) -> Iterator[str]:
     """Say for which pulley a mass is found, what else explains an unusual gravity, and what the axle does."""
     decided, scene = answers.decided, answers.decided.scene
     finds, g = decided.motion.finds, scene.g
     if finds in MASSES and scene.M is scene.I is None:
         yield f"`{finds}` is for a massless pulley, as `M` is not given."
+    if finds == "axle" and decided.motion.a == 0:
+        yield "As the masses rest, `axle` is the least friction that holds them; it may be more."
     if finds == "g" and g < LOW_GRAVITY and not decided.has_axle_friction:
         causes = "more inertia, or friction of the axle (`--find axle`)"
         yield f"`g` is low for the Earth; {causes}, would slow the masses, too."

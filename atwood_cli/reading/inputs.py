@@ -78,6 +78,9 @@ def read_digits(given: int | str | None) -> int | None:
     return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
+BY_A_MOTOR = "; the force of a motor is found by atwood solve --find drive"
+
+
 def _check_domain(name: str, given: Given, value: Fraction | float, signed: bool) -> None:
     """Raise SceneError if an input may not have this value."""
     parameter = parameter_of(name)
@@ -85,7 +88,8 @@ def _check_domain(name: str, given: Given, value: Fraction | float, signed: bool
     too_small &= not parameter.signed
     if too_small or (abs(value) == inf and not parameter.may_be_infinite):
         massless = "; a pulley without inertia is M = 0" if name == "I" and value == 0 else ""
-        raise SceneError(name, given, parameter.domain + massless)
+        by_motor = BY_A_MOTOR if name == "axle" and value < 0 else ""
+        raise SceneError(name, given, parameter.domain + massless + by_motor)
 
 
 def _read_text(name: str, text: str) -> Input:

@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from ..numbers.text import nearest
 from ..solver.quantities import MEASURED_NAMES, QUANTITIES, STANDARD, TABLE_NAMES
-from ..solver.scene import INPUTS, MEASURED, SceneError, Unit
+from ..solver.scene import DRIVE, FINDABLE, INPUTS, MEASURED, SceneError, Unit
 from .units import Malformed, read_unit_of_result
 
 SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
@@ -25,8 +25,9 @@ NAMES_BY_SYMBOL = {
 MEANT = {
     **dict.fromkeys("mu mumin leastmu mucrit coefficient frictioncoefficient".split(), "mu_verge"),
     **dict.fromkeys("mcrit criticalmass".split(), "critical_pulley_mass"),
+    **{"wrap": "least_wrap", "time": "fall_time", "speed": "final_speed", "rimmass": "moment_of_inertia"},
 }
-"""What other words probably mean, in plain small letters."""
+"""The quantities that other words probably mean, in plain small letters."""
 
 
 MASS_WORDS = "m mass masse masa massa масса".split()
@@ -45,8 +46,9 @@ WORDS_FOR_INPUTS = {
     "drop": "h height distance s",
     "time": "t",
     "speed": "v velocity v_final vf final_speed final_velocity",
+    DRIVE: "drive motor brake",
 }
-"""Other words for inputs, and for what is measured: hints, which only `find` takes."""
+"""Other words for inputs, for what is measured, and for a drive: hints, which only `find` takes."""
 OTHER_NAMES = {
     **{f"{word}{number}": f"m{number}" for word in MASS_WORDS for number in (1, 2)},
     **dict.fromkeys(("m", "mass"), "M"),
@@ -112,6 +114,9 @@ def read_name(
     hint = f"; did you mean {meant}?" if meant in known else ""
     known_names = "; see atwood quantities" if kind == "quantity" else f"; there are {', '.join(known)}"
     a_kind = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+    result = NAMES_BY_SYMBOL.get(_plain(word)) or MEANT.get(small)
+    if known is FINDABLE and result in TABLE_NAMES:
+        hint = f"; leave find out: {result} is a result (--only {result})"
     if kind == "quantity" and " in " in word:
         raise SceneError(parameter, word, "has a unit, which only solve and sweep take; leave it out")
     if kind == "quantity" and word in MEASURED_NAMES and word not in INPUTS:

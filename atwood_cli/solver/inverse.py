@@ -24,6 +24,8 @@ from .scene import DRIVE, FALL, INPUTS, MASSES, MEASURED, Input, Scene, SceneErr
 
 MOTOR = "for a motor or a brake find the drive"
 IF_IT_SLOWS_DOWN = "for masses that slow down give a and find axle"
+IF_IT_RESTS = "for masses that rest give a and find axle"
+LOADS_HELD = "without a motion and find, mu tells between which values of {} the string holds"
 NOT_BELOW_0 = "must be above 0, unless a mass is found from it: then it is below 0 if m2 rises"
 
 
@@ -36,7 +38,8 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
     fall = [name for name in given if name in FALL]
     is_measured = "a" in given or len(fall) > 1
     if find and not is_measured:
-        raise SceneError("find", find, f"needs a measured motion: a, or two of {', '.join(FALL)}")
+        loads = f"; {LOADS_HELD.format(find)}" if find in MASSES and inputs[find].given is None else ""
+        raise SceneError("find", find, f"needs a measured motion: a, or two of {', '.join(FALL)}{loads}")
     if len(fall) > 1 and (excess := [name for name in given if name not in fall[:2]]):
         rule = f"is one too many beside {fall[0]} and {fall[1]}, which give the acceleration; leave one out"
         raise SceneError(excess[0], inputs[excess[0]].given, rule)
@@ -101,10 +104,12 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
     decided, finds = Decisions(scene), scene.motion.finds
     M, I, mu, has_axle_friction = scene.M, scene.I, scene.mu, decided.has_axle_friction
     match finds:
-        case "M" | "g" | "m1" | "m2" | "axle" if mu is not None:
-            return f"finds {finds} by assuming that the string does not slip; leave mu out"
         case "m1" | "m2" if M == inf or (scene.motion.a == 0 and has_axle_friction):
-            return f"says nothing about {finds} on a pulley at rest; give {finds}"
+            return f"says nothing about {finds} on a pulley at rest; {LOADS_HELD.format(finds)}"
+        case "M" | "g" | "m1" | "m2" | "axle" if mu is not None:
+            held = finds in MASSES and scene.motion.a == 0
+            way = LOADS_HELD.format(finds) if held else "leave mu out"
+            return f"finds {finds} by assuming that the string does not slip; {way}"
         case "m1" | "m2" if 0 in (scene.m1, scene.m2) and not (decided.rim_mass or has_axle_friction):
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         case "drive" if M == inf:
@@ -181,7 +186,8 @@ def found_inputs(scene: Scene) -> dict[str, Any]:
         return {finds: physics.axle_friction(l, h, c, a, g)}
     if a <= 0 and finds != DRIVE:
         heavier, side = ("m2", "above") if m2 > m1 else ("m1", "below")
-        raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass; {IF_IT_SLOWS_DOWN}")
+        way = "" if finds == "mu_k" else f"; {IF_IT_SLOWS_DOWN if a else IF_IT_RESTS}"
+        raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass{way}")
     if finds == "M":
         return {finds: physics.rim_mass(l, h, a, g, b) / decided.beta}
     assert finds in ("g", "mu_k", DRIVE), finds  # the machine computes the others

@@ -160,7 +160,11 @@ ONE_SIDED = "not computed unless both ends pull downwards (half a turn of wrap, 
 NEEDS_MOTION = "`give` `a`, or two of `drop`, `time` and `speed`, {}"
 FINDS_ANOTHER = "no value, as the motion finds `{}`; it finds one unknown at a time"
 TO_FIND: dict[str, str] = {
-    **{name: f"without `{name}` and `mu`" for name in ("g", "m1", "m2")},
+    "g": "without `g` and `mu`",
+    **{
+        x: f"without `{x}` and `mu`; see also `critical_lighter_mass` and `critical_heavier_mass`"
+        for x in ("m1", "m2")
+    },
     "M": "without `M`, `I` and `mu`; see also `critical_pulley_mass`",
     "mu_k": "with `M` = `inf`, or with `M` and a `mu` that is too small",
     "axle": "without `mu`, and find `axle`",

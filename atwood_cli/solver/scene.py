@@ -356,8 +356,12 @@ class Scene(NamedTuple):
         m1, m2, M, mu, mu_k, inertia, I = (values[x] for x in ("m1", "m2", "M", "mu", "mu_k", "inertia", "I"))
         for mass in MASSES:
             if values[mass] is None and mass != finds and (not may_lack or mu is None):
-                fixed = "" if M is I is None else f"; {mass} = 0 is an end fixed to the pulley"
-                refuse(mass, f"{MISSING_MASS}{fixed}")
+                by_motion = finds is not None and finds not in ("axle", DRIVE)
+                or_one = ", or one with mu" if may_lack else ", or one with a motion that finds the other"
+                fixed = (
+                    "" if M is I is None and finds != DRIVE else f"; {mass} = 0 is an end fixed to the pulley"
+                )
+                refuse(mass, f"{MISSING_MASS}{or_one if may_lack or by_motion else ''}{fixed}")
         if finds is None and len(motion.fall) > 1:
             rule = "give the acceleration, which only solve takes; leave one of them out"
             refuse(motion.fall[1], f"and {motion.fall[0]} {rule}", "two of drop, time and speed")
