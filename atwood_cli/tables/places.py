@@ -80,8 +80,9 @@ def asked(
     with suppress(Unreadable):
         said = naming.of(sheet.columns)
     read, headings = [*words], list[Heading]()
-    for i, text in enumerate(said):  # what cannot be read beside those before it is open
-        read[i] = text
+    meant = [meaning_of(text, vocabulary) for text in said]
+    for i in (i for i, own in enumerate(meant) if own):  # what cannot be read beside those before it is open
+        read[i] = said[i]
         try:
             headings = read_headings(sheet.columns, vocabulary, read)
         except Unreadable:
@@ -90,7 +91,6 @@ def asked(
         words[own.place] = _word(own, own.name, own.number)
         if own.u:
             words[own.u.place] = _word(own.u, own.name, f"{own.number}_err")
-    meant = (meaning_of(text, vocabulary) for text in said)
     missing = missing_of({*given, *(own.name for own in meant if own)})
     left = [i for i, word in enumerate(words) if word == UNREAD and sheet.has_numbers(i)]
     left = [i for i in left if i or not sheet.numbers]
