@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import chain
-from math import log10, sqrt
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -18,12 +18,10 @@ from ..solver.answers import Answers
 from ..solver.scene import parameter_of
 from .columns import MEASURED
 from .diagnosis import RARE, SELDOM
-from .estimate import ROUNDING, Fitted, accelerations, data_of, expected, moves
+from .estimate import Fitted, accelerations, data_of, expected, moves
 from .results import QUANTITIES, RESULTS, USUAL, Fit, cut, equation, published, rounded
 from .statistics import NORMAL_DOF
 
-COMPUTED = 1e-9
-"""Below this share of what is measured nobody's runs scatter."""
 NOT_FITTED = "no value, as it is given, was not to be fitted, or the runs do not determine it"
 
 
@@ -31,57 +29,39 @@ NOT_FITTED = "no value, as it is given, was not to be fitted, or the runs do not
 
 
 def verdict(fit: Fitted) -> str:
-    """Return how many runs there are, and which quantities differ from 0 as shown."""
+    """Return how many runs there are, and which quantities are above 0 as the table shows them."""
     measurements = counted(int(fit.data.counts.sum()), MEASURED[fit.runs.kind])
     sentences = [f"{counted(len(fit.data.l), 'run')}, {measurements}."]
     if not fit.names:
         sentences.append("Nothing is left to fit: the pulley and its axle are given.")
-    for name in USUAL:
-        if name in fit.results:
-            value, u, (low, high) = fit.results[name]
-            verb = "is not distinguishable from 0"
-            is_above = float(cut(low, u) or 0) > 0  # as the table shows it
-            if is_above:
-                verb = "is clearly above 0"
-            elif value < -u:
-                verb = "is negative, which chance may explain"
-            is_open = not is_above and float(cut(high, u) or 0) > 0
-            most = f"; it may be up to {cut(high, u)} {QUANTITIES[name].unit}" if is_open else ""
-            sentences.append(_capital(f"{QUANTITIES[name].words} {verb}{most}."))
+    for name in (x for x in USUAL if x in fit.results):
+        _, u, (low, high) = fit.results[name]
+        most = f"it may be up to {cut(max(high, 0.0), u)} {QUANTITIES[name].unit}"
+        is_above = float(cut(low, u) or 0) > 0
+        verb = "is clearly above 0" if is_above else f"is not distinguishable from 0; {most}"
+        sentences.append(_capital(f"{QUANTITIES[name].words} {verb}."))
     return " ".join(sentences)
 
 
 def _scatter(fit: Fitted) -> str:
-    """Return how the scatter of the runs is known, and its p value."""
-    p_value = fit.line.p_value
+    """Return how the scatter of the runs is known, and if it is more than that of repeats."""
+    line, data, p_value = fit.line, fit.data, fit.line.p_value
     if p_value is None:
         return "There are as many runs as results, so nothing is left to test the fit."
-    share = float(np.max(np.abs(fit.line.y) / fit.data.measured))
-    if share < COMPUTED:
-        digits = int(-log10(max(share, ROUNDING)))
-        return f"The runs agree with the fit to {digits} digits, as computed data do."
-    if not fit.data.scatter.any():
-        repeated = np.flatnonzero(np.bincount(fit.runs.run) > 1)
-        equal = f"Repeats in {fit.runs.rows_in_words(*repeated)} are equal, as those of a copied row"
-        why = equal if len(repeated) else f"No {MEASURED[fit.runs.kind]} was repeated"
-        return f"{why}, so only the residuals show the scatter."
+    if not data.scatter.any():
+        return "No repeats show the scatter of measurements; only the residuals do."
     probability = f"p = {rounded(p_value)}" if p_value >= 0.001 else "p < 0.001"
-    source = "uncertainties" if fit.data.stated else "repeats"
-    known_dof = fit.data.known_dof
-    test = f" by an F({fit.line.dof}, {known_dof:.0f}) test" if known_dof < NORMAL_DOF else ""
-    chi2 = f"χ² = {rounded(fit.line.chi2, 3)}, {counted(fit.line.dof, 'degree')} of freedom"
-    by = f"{source} ({chi2}, {probability}{test})"
+    test = f" by an F({line.dof}, {data.known_dof:.0f}) test" if data.known_dof < NORMAL_DOF else ""
+    chi2 = f"χ² = {rounded(line.chi2, 3)}, {counted(line.dof, 'degree')} of freedom, {probability}{test}"
+    verb = "agree with the fit within chance, by"
     if p_value < SELDOM:
-        what = "times" if fit.data.varying == "time" else "forces"
-        return (
-            f"The runs scatter more than their {by}; the scatter between runs is taken as one of the {what}."
-        )
-    if fit.outliers:
-        return f"As there are outliers, no test says if the runs scatter more than their {by}."
-    if p_value > 1 - RARE:
-        as_stated = "; these are taken as stated, and may be too large" if fit.data.stated else ""
-        return f"The runs scatter less than their {by}{as_stated}."
-    return f"The runs agree with the fit within chance, by their {by}."
+        verb = "scatter more than"
+    elif fit.outliers:
+        verb = "have outliers, so no test says if they scatter more than"
+    elif p_value > 1 - RARE:
+        verb = "scatter less than"
+    between = f"; the scatter between runs is taken as one of the {data.varying}s" if line.between else ""
+    return f"The runs {verb} their {'uncertainties' if data.stated else 'repeats'} ({chi2}){between}."
 
 
 def _capital(words: str) -> str:
@@ -193,12 +173,9 @@ def _print_page(page: Page, fit: Fitted, runs: Sequence[Mapping[str, Any]]) -> N
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     of_a = ("a (m/s²)", "expected (m/s²)") if kind == "time" else ()
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads, *of_a), _rows(fit, runs))
-    sources = {"value": "as the residuals show it", "time": "with a scatter of times between runs added"}
-    source = sources.get(fit.data.varying, "with a scatter of forces between runs added")
-    between = f", {source}" if fit.line.between else ""
     has_columns = fit.data.stated or fit.data.uncertain
     independent = " Uncertainties in columns count as independent from row to row." if has_columns else ""
-    page.say(f"u is the standard uncertainty of a run's mean{between}.{independent}", *chain(*others))
+    page.say(f"u is the standard uncertainty of a run's mean.{independent}", *chain(*others))
     page.say(*first, style="bold")
     if fit.results:
         numbers = ((x, published(*result), QUANTITIES[x]) for x, result in fit.results.items())
