@@ -14,11 +14,12 @@ from ..numbers.text import counted
 from ..output.forms import Report
 from ..output.page import Page
 from ..output.text import aligned, cell
+from ..solver import physics
 from ..solver.answers import Answers
-from ..solver.scene import parameter_of
+from ..solver.scene import MASSES, parameter_of
 from .columns import MEASURED
 from .diagnosis import RARE, SELDOM
-from .estimate import Fitted, accelerations, data_of, expected, moves
+from .estimate import Fitted, data_of, expected, moves
 from .results import QUANTITIES, RESULTS, USUAL, Fit, cut, equation, published, rounded
 from .statistics import NORMAL_DOF
 
@@ -140,23 +141,25 @@ def _correlation(covariance: Any) -> float | None:
 
 def _records(fit: Fitted) -> list[dict[str, Any]]:
     """Return the runs, as JSON and CSV have them; the residual is in standard uncertainties."""
-    runs, shown = fit.runs, data_of(fit.runs, fit.shown)
+    runs, shown, delay = fit.runs, data_of(fit.runs, fit.shown), fit.values["delay"]
     measured, (u, ideal) = runs.mean.copy(), np.full((2, len(runs.rows)), np.nan)
     if fit.data.stated:
         measured[fit.used] = runs.sign[fit.used] * fit.data.measured  # weighted means
     u[fit.used] = fit.line.sigma
-    ideal[fit.shown] = runs.sign[fit.shown] * np.where(
-        moves(shown, fit.values), expected(shown, fit.values), np.nan
-    )
-    u[np.isnan(ideal)] = np.nan
-    residual = (measured - ideal) / u
-    columns = {**runs.given, runs.kind: measured, "u": u, "expected": ideal, "residual": residual}
+    moving = np.where(moves(shown, fit.values), expected(shown, fit.values), np.nan)
+    ideal[fit.shown] = runs.sign[fit.shown] * moving
     a, u_a, ideal_a = measured, u, ideal
     if runs.kind == "time":
-        fall = np.where(measured > fit.values["delay"], measured - fit.values["delay"], np.nan)
-        a = accelerations(shown._replace(drop=runs.given["drop"]), fall)
-        ideal_a = accelerations(shown._replace(drop=runs.given["drop"]), ideal - fit.values["delay"])
+        fall = np.where(measured > delay, measured - delay, np.nan)
+        a, ideal_a = (physics.acceleration_of_fall(runs.given["drop"], t) for t in (fall, ideal - delay))
         u_a = 2 * a * u / fall
+    columns = {
+        **runs.given,
+        runs.kind: measured,
+        "u": u,
+        "expected": ideal,
+        "residual": (measured - ideal) / u,
+    }
     columns |= {"a": a, "u_a": u_a, "expected_a": ideal_a}
     return [
         {"rows": " ".join(map(str, rows))}
@@ -192,18 +195,14 @@ def _rows(fit: Fitted, runs: Sequence[Mapping[str, Any]]) -> list[list[str]]:
     """Return the cells of each run: the measurement, what is expected, and the residual."""
     # The mean has the digits of its own scatter.
     finest = float(min(fit.data.scatter.min() or np.inf, fit.line.sigma.min()))
-    rows = []
+    kind, rows = fit.runs.kind, []
     for run in runs:
-        masses, u, residual = (format_number(run[x]) for x in ("m1", "m2")), run["u"], run["residual"]
-        numbers = cut(run[fit.runs.kind], finest), cut(run["expected"], finest), cut(u, u)
-        last = "" if residual is None else f"{residual:z.2f}"
         first, *others = run["rows"].split()
         is_range = len(others) > 1 and int(others[-1]) - int(first) == len(others)  # numbers of rows ascend
         row = f"{first}–{others[-1]}" if is_range else ",".join([first, *others])
-        of_a = (
-            [published(run["a"], run["u_a"])[0], cut(run["expected_a"], run["u_a"])]
-            if run["u_a"]
-            else ["", ""]
-        )
-        rows.append([row, *masses, *numbers, last, *(of_a if fit.runs.kind == "time" else [])])
+        numbers = cut(run[kind], finest), cut(run["expected"], finest), cut(run["u"], run["u"])
+        residual = "" if run["residual"] is None else f"{run['residual']:z.2f}"
+        a = published(run["a"], run["u_a"])[0] if run["u_a"] else ""
+        of_a = [a, cut(run["expected_a"], run["u_a"])] if kind == "time" else []
+        rows.append([row, *(format_number(run[x]) for x in MASSES), *numbers, residual, *of_a])
     return rows
