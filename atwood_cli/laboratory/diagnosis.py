@@ -28,13 +28,11 @@ from .estimate import (
     separates,
 )
 from .results import FITTED, QUANTITIES, equation, published, rounded
-from .runs import Places, Runs, Selection, in_words
+from .runs import Runs, Selection, in_words
 from .statistics import CannotSeparate, Line, distances_from, judge_of_repeats, outliers, spread_of_columns
 
 OUTLIER_LEVEL = 0.012
 """The chance of a false alarm in a sound set: once among repeats, once among runs. It is from simulations."""
-FEW_REPEATS = 3
-"""With fewer degrees of freedom repeats do not judge each other."""
 SELDOM = 0.05
 """The p value below which runs are said to scatter more than their repeats."""
 RARE = 0.01
@@ -51,8 +49,6 @@ WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
 LEAST_SHARE, MOST_SHARE = 1e-4, 2.0
 """An acceleration outside these shares of that without a pulley and friction must be a mistake."""
-MEASURED_A = {"a": "a", "time": "a = 2 drop/t²"}
-"""How a measured acceleration is known, by what was measured."""
 CHECK = "check masses, heights, measurements, their units and signs"
 
 
@@ -177,9 +173,8 @@ def _cause(freed: Fitted) -> str:
 def _unseen_delay(fit: Fitted, freed: Mapping[str, Fitted]) -> str:
     """Say that runs cannot show a delay of all times, or ""."""
     one, gives = freed.get("delay"), ""
-    if fit.runs.kind != "time" or "delay" in fit.names:
-        return ""
-    if one and one.line.times * one.line.u[-1] <= WIDE_DELAY:
+    is_shown = one and one.line.times * one.line.u[-1] <= WIDE_DELAY
+    if fit.runs.kind != "time" or "delay" in fit.names or is_shown:
         return ""
     if one and _is_plausible(one):
         value, _ = published(one.values["delay"], one.line.u[-1])
@@ -197,30 +192,19 @@ Distances = dict[int, float]
 
 
 def _far(fit: Fitted) -> tuple[Distances, Distances, Fitted, Line]:
-    """Return outliers among repeats, those among rows, the fit without the first, and the line without both.
-
-    Few repeats are judged as runs of their own.
-    """
-    runs, run_of, cells, clean = fit.runs, fit.runs.run, Distances(), fit
-    places = np.flatnonzero((fit.used & (np.bincount(run_of) > 1))[run_of])
-    free = len(places) - len({*run_of[places]})
+    """Return outliers among repeats, and among runs; the fit without the first, the line without both."""
+    cells, clean = _far_repeats(fit), fit
     with suppress(CannotSeparate):
-        if 0 < free < FEW_REPEATS and not fit.data.stated:
-            given, u = ({x: column[run_of] for x, column in some.items()} for some in (runs.given, runs.u))
-            single = runs._replace(
-                given=given, u=u, left_out=runs.left_out[run_of], run=np.arange(len(run_of))
-            )
-            clean = best_fit(single, fit.used[run_of], fit.shared, fit.names)
-        elif cells := _far_repeats(fit, places, free):
-            clean = _without(fit, cells)
+        clean = _without(fit, cells)
     far, line = _far_runs(clean)
-    judged = run_of if len(clean.used) == len(fit.used) else np.arange(len(run_of))
-    rows = {int(i): distance for run, distance in far.items() for i in np.flatnonzero(judged == run)}
+    rows = {int(i): distance for run, distance in far.items() for i in np.flatnonzero(fit.runs.run == run)}
     return cells, rows, clean, line
 
 
 def _without(fit: Fitted, far: Distances) -> Fitted:
     """Return the fit without the measurements at these places. Raises CannotSeparate."""
+    if not far:
+        return fit
     old, kept = fit.runs, np.delete(np.arange(len(fit.runs.values)), [*far])
     runs = old._replace(values=old.values[kept], u_values=old.u_values[kept], run=old.run[kept])
     used = fit.used & (np.bincount(runs.run, minlength=len(fit.used)) > 0)
@@ -228,35 +212,32 @@ def _without(fit: Fitted, far: Distances) -> Fitted:
 
 
 def _named(fit: Fitted, far: Distances) -> list[tuple[int, str]]:
-    """Return outliers as runs with a message on each; what is wrong with a run or a row is named once."""
+    """Return outliers as runs with a message on each: on a run once, or on a measurement."""
     runs, messages = fit.runs, dict[str, tuple[int, str]]()
     for place, distance in far.items():
-        run, cell = int(runs.run[place]), runs.cells[place]
-        of_run, row = np.flatnonzero(runs.run == run).tolist(), cell.split(":")[0]
-        where: Sequence[int | str] = runs.rows[run]
-        if not all(i in far for i in of_run):
-            is_whole = all(i in far for i in of_run if runs.cells[i].startswith(f"{row}:"))
-            where = [row if is_whole else cell]
-        unit = parameter_of(runs.kind).unit
-        value = f" = {format_number(float(runs.values[place]))} {unit}" if where == [cell] else ""
-        what = f"{in_words(*where)}{value} {'is' if len(where) == 1 else 'are'}"
+        run = int(runs.run[place])
+        is_run = all(i in far for i in np.flatnonzero(runs.run == run).tolist())
+        where: Sequence[int | str] = runs.rows[run] if is_run else [runs.cells[place]]
+        number = f" = {format_number(float(runs.values[place]))} {parameter_of(runs.kind).unit}"
+        verb = " are" if len(where) > 1 else " is" if is_run else f"{number} is"
         left_out = ",".join(map(str, where))
         why = f"{rounded(abs(distance))} standard deviations from what the others give"
         way = f"if it is a mistake, leave it out: {fit.shared.option('without', left_out)}"
-        messages.setdefault(left_out, (run, f"{what} {why}; {way}"))
+        messages.setdefault(left_out, (run, f"{in_words(*where)}{verb} {why}; {way}"))
     return [*messages.values()]
 
 
-def _far_repeats(fit: Fitted, places: Places, free: int) -> Distances:
-    """Return the outliers among repeats, at these ``places``."""
+def _far_repeats(fit: Fitted) -> Distances:
+    """Return the outliers among repeats."""
     # Of two repeats, which are equally far from each other, that far from the line comes first.
     runs = fit.runs
+    places = np.flatnonzero((fit.used & (np.bincount(runs.run) > 1))[runs.run])
     ideal = expected(fit.data, fit.values)[(np.cumsum(fit.used) - 1)[runs.run[places]]]
     away = (runs.sign[runs.run] * runs.values)[places] - ideal
     places = places[np.argsort(-np.abs(away), kind="stable")]
     u = runs.u_values[places] if fit.data.stated else np.ones(len(places))
     judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
-    return outliers(judge, places, free, OUTLIER_LEVEL)
+    return outliers(judge, places, len(places) - len({*runs.run[places]}), OUTLIER_LEVEL)
 
 
 def _far_runs(fit: Fitted) -> tuple[Distances, Line]:
@@ -331,5 +312,5 @@ def impossible(
     value, times, usual = (rounded(float(x), 3) for x in (a[i], a[i] / free[i], free[i]))
     far = f"{value} m/s² is {times} times the acceleration without friction and pulley, {usual} m/s²"
     too = f"; see {shortened(runs.rows_in_words(*places[1:]))}, too" if len(places) > 1 else ""
-    words = f"{runs.rows_in_words(places[0])}: {MEASURED_A[runs.kind]} = {far}{too}{gives}; {CHECK}"
+    words = f"{runs.rows_in_words(places[0])}: a = {far}{too}{gives}; {CHECK}"
     return words, float(is_impossible.mean())
