@@ -41,10 +41,9 @@ NEAR_BEST = 4.0
 """Explanations are as good as the best if their χ² is not this many times the variance above it."""
 WIDE_SPREAD = 3.0
 """Columns of repeats that differ as a whole do so by this many standard deviations, or more."""
-PLAUSIBLE = {"gravity": (5.0, 15.0), "of a height": (3.0, 25.0)}
-"""The least and the most gravity (m/s²) that may be a cause, or stand for a height that is given."""
-PLAUSIBLE_DELAY = -0.2, 0.5
-"""The least and the most delay that may be a cause, in shares of the shortest time."""
+PLAUSIBLE = {"gravity": (5.0, 15.0), "height": (3.0, 25.0), "delay": (-0.2, 0.5)}
+"""The least and the most that may be a cause: of gravity (m/s²), of gravity that stands for a height which is
+given, and of a delay, in shares of the shortest time."""
 WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
 LEAST_SHARE, MOST_SHARE = 1e-4, 2.0
@@ -68,8 +67,7 @@ def diagnosed(fit: Fitted, is_mixed: bool) -> Fitted:
         rows = {}
     outliers = _named(fit, cells | rows)
     words = _in_words(causes) or (_unseen_delay(clean, freed) if not outliers else "")
-    also = ", which may explain outliers, too" if causes and rows else ""
-    return fit._replace(outliers=outliers, causes=[f"{words}{also}"] if words else [])
+    return fit._replace(outliers=outliers, causes=[words] if words else [])
 
 
 def contradiction(fit: Fitted) -> str:
@@ -100,19 +98,21 @@ def _freed(fit: Fitted) -> dict[str, Fitted]:
     return freed
 
 
-def is_negative(name: str, value: float, u: float, line: Line | None = None) -> bool:
-    """Decide if a value is below 0 by more than 2 u, and more than chance explains by a ``line``."""
-    return name != "delay" and value + max(2.0, line.times if line else 0.0) * u < 0
+def is_negative(name: str, value: float, u: float, times: float = 2.0) -> bool:
+    """Decide if what must be above 0 is below it by more than 2 u, and by more than so many ``times`` u."""
+    return name != "delay" and value + max(2.0, times) * u < 0
 
 
 def _is_plausible(freed: Fitted) -> bool:
     """Decide if what must be above 0 may be, and if a freed quantity is of a size that it may have."""
-    name, shortest = freed.names[-1], float(freed.data.measured.min())
-    of_gravity = PLAUSIBLE["of a height" if "drop" in freed.shared.inputs else "gravity"]
-    sizes = {"gravity": of_gravity, "delay": (PLAUSIBLE_DELAY[0] * shortest, PLAUSIBLE_DELAY[1] * shortest)}
-    low, high = sizes.get(name, (-inf, inf))
+    name = freed.names[-1]
+    unit = float(freed.data.measured.min()) if name == "delay" else 1.0
+    of_height = name == "gravity" and "drop" in freed.shared.inputs
+    low, high = PLAUSIBLE.get("height" if of_height else name, (-inf, inf))
     pairs = zip(freed.names, freed.line.u, strict=True)
-    return low < freed.values[name] < high and not any(is_negative(x, freed.values[x], u) for x, u in pairs)
+    return low < freed.values[name] / unit < high and not any(
+        is_negative(x, freed.values[x], u) for x, u in pairs
+    )
 
 
 def _variance(line: Line) -> tuple[float, float]:
@@ -286,9 +286,8 @@ def columns_in_doubt(runs: Runs, used: Selection) -> list[str]:
 def _is_sound(fit: Fitted) -> bool:
     """Decide if a pulley explains a fit, and more runs than are needed support it."""
     pairs = zip(fit.names, fit.line.u, strict=True)
-    if any(is_negative(x, fit.values[x], u, fit.line) for x, u in pairs):
-        return False
-    return fit.line.dof > 0 and bool(moves(fit.data, fit.values).all())
+    negative = any(is_negative(x, fit.values[x], u, fit.line.times) for x, u in pairs)
+    return fit.line.dof > 0 and not negative and bool(moves(fit.data, fit.values).all())
 
 
 def impossible(

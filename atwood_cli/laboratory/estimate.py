@@ -253,6 +253,14 @@ class Fitted(NamedTuple):
     causes: Sequence[str] = ()
 
 
+def rough_fit(runs: Runs, used: Selection, shared: Conditions, names: Sequence[str]) -> Fitted:
+    """Return the fit by forces, which needs no steps. Raises CannotSeparate."""
+    data = data_of(runs, used)
+    values = by_forces(data, shared.values, names)
+    line = line_of(of_forces, data, values, names)
+    return Fitted(runs, used, used, shared, names, data, values, line)
+
+
 def best_fit(runs: Runs, used: Selection, shared: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit with the likelier scatter between runs. Raises CannotSeparate.
 

@@ -13,24 +13,11 @@ from ..reading.names import divided, read_names
 from ..solver import physics
 from ..solver.scene import MASSES, Input, Scene, SceneError, parameter_of
 from .diagnosis import CHECK, MOST_SHARE, columns_in_doubt, contradiction, diagnosed, impossible, is_negative
-from .estimate import (
-    Conditions,
-    Fitted,
-    best_fit,
-    by_forces,
-    data_of,
-    estimate,
-    line_of,
-    moves,
-    of_forces,
-    separates,
-)
+from .estimate import Conditions, Fitted, best_fit, data_of, estimate, moves, rough_fit, separates
 from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, in_python
 from .runs import OUT_OF_RANGE, REACHES_0, Runs, Selection, behind_an_error, in_range
 from .statistics import CannotSeparate
 
-EARTH = 9.76, 9.84
-"""The least and the most gravity (m/s²) on land."""
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
 DERIVED = {"I": "R", "M": "inertia"}
@@ -122,12 +109,8 @@ def fitted(runs: Runs, shared: Conditions, names: Sequence[str]) -> Fitted:
     except CannotSeparate as error:
         raise CannotSeparate(f"{doubt or error}{behind_an_error([*remarks, *runs.doubts])}") from None
     fit = diagnosed(fit._replace(shown=shown), is_mixed=bool(columns))
-    if doubt and not fit.outliers:
-        fit = fit._replace(runs=runs._replace(doubts=[*runs.doubts, f"{doubt}."]))
-    causes, (low, high) = [*fit.causes], fit.results["gravity"].interval if "gravity" in names else EARTH
-    if high < EARTH[0] or low > EARTH[1]:
-        causes.append(f"gravity is not that of Earth, {EARTH[0]} to {EARTH[1]} m/s²: {CHECK}")
-    return fit._replace(causes=causes)
+    more = [f"{doubt}."] if doubt and not fit.outliers else []
+    return fit._replace(runs=runs._replace(doubts=[*runs.doubts, *more]))
 
 
 def _with_results(runs: Runs, used: Selection, shared: Conditions, names: Sequence[str]) -> Fitted:
@@ -136,18 +119,16 @@ def _with_results(runs: Runs, used: Selection, shared: Conditions, names: Sequen
         fit = best_fit(runs, used, shared, names)
         ends = [*_at_ends(fit)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        message, data = impossible(runs, used, shared, names)[0] or CHECK, data_of(runs, used)
+        message = impossible(runs, used, shared, names)[0] or CHECK
         with suppress(CannotSeparate):
-            values = by_forces(data, shared.values, names)
-            line = line_of(of_forces, data, values, names)
-            message = contradiction(Fitted(runs, used, used, shared, names, data, values, line))
+            message = contradiction(rough_fit(runs, used, shared, names))
         raise CannotSeparate(f"{NO_FIT}: {message}") from None
     line, results = fit.line, dict[str, Result]()
     spread = _with_derived(dict(zip(names, line.u, strict=True)), names, shared)
     for x, value in _with_derived(fit.values, names, shared).items():
         u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in ends))
         results[x] = Result(value, u, (value - line.times * u, value + line.times * u))
-        if x in names and is_negative(x, value, u, line):
+        if x in names and is_negative(x, value, u, line.times):
             raise CannotSeparate(f"{equation(x, value, u)} is negative: {contradiction(fit)}")
     if runs.kind == "time" and not moves(fit.data, fit.values).all():
         raise CannotSeparate(f"{NO_FIT}: {contradiction(fit)}")

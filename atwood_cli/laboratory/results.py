@@ -82,17 +82,11 @@ def in_python(option: str, value: str = "") -> str:
 
 
 class Fit(NamedTuple):
-    """The results of a fit by name; None if the runs do not determine a result.
+    """The results of a fit by name, in SI units; None if the runs do not determine a result.
 
-    ``rim_mass`` (kg) is the pulley's inertia as a mass at its rim, c = I/R². ``axle`` (N) is the friction of
-    its axle as a force at the rim, ``gravity`` is in m/s², and all times are too long by ``delay`` (s).
-    ``pulley_mass`` (kg) needs the pulley's shape, and ``moment_of_inertia`` (kg m²) its radius.
     ``uncertainty`` and ``interval`` have the standard uncertainty of a result and both ends of its interval
-    of 95 %. ``correlation`` is that of the two results that have most of it. ``chi2`` is χ² by the
-    uncertainties stated, or by the scatter of repeats, with ``dof`` degrees of freedom; ``interval_dof`` are
-    those of Student's t of intervals (None: the normal distribution). ``between_runs`` is the standard
-    deviation between runs beyond those uncertainties, of times, or of forces as masses, and has the unit
-    ``between_runs_unit``. ``runs`` has a record for each run.
+    of 95 %. All times are too long by ``delay``, and ``notes`` say what is to be known besides.
+
     """
 
     rim_mass: float | None
@@ -135,3 +129,6 @@ class Fit(NamedTuple):
             for x, u in self.uncertainty.items()
         ]
         return "\n".join([*lines, *self.notes])
+
+
+Fit.__doc__ = f"{Fit.__doc__}{'; '.join(f'{name}: {words}' for name, words in RESULTS.items())}."
