@@ -92,19 +92,18 @@ def fitted(runs: Runs, shared: Conditions, names: Sequence[str]) -> Fitted:
         if not used.any():
             raise CannotSeparate("no run can be used")
         data = data_of(runs, used)
-        what = [QUANTITIES[x].words for x in names]
+        what = " and ".join(QUANTITIES[x].words for x in names)
         needed = len(names) + int(data.varying == "value" and not data.uncertain)
         if len(data.l) < needed:
-            why = f"{counted(len(data.l), 'run')} cannot determine {' and '.join(what)}"
-            raise CannotSeparate(f"{why}: give {needed} or more")
+            few = counted(len(data.l), "run")
+            raise CannotSeparate(f"{few} cannot determine {what}: give {needed} or more")
         doubt, share = impossible(runs, used, shared, names, MOST_SHARE)
         if share > 0.5:
             raise CannotSeparate
         if not separates(data, shared.values, names):
-            give, is_one = (f", or give {GIVE[x]}" for x in names if x in GIVE), len(names) == 1
-            why = f"determine {what[0]}" if is_one else f"separate {' from '.join(what)}"
-            vary = f"vary both m2 - m1 and m1 + m2 more{'' if is_one else ''.join(give)}"
-            raise CannotSeparate(f"the runs do not {why}: {vary}")
+            give = "".join(f", or give {GIVE[x]}" for x in names if x in GIVE)
+            vary = f"vary both m2 - m1 and m1 + m2 more{give}"
+            raise CannotSeparate(f"the runs do not determine {what}: {vary}")
         fit = _with_results(runs, used, shared, names)
     except CannotSeparate as error:
         raise CannotSeparate(f"{doubt or error}{behind_an_error([*remarks, *runs.doubts])}") from None
