@@ -38,7 +38,8 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
     fall = [name for name in given if name in FALL]
     is_measured = "a" in given or len(fall) > 1
     if find and not is_measured:
-        loads = f"; {LOADS_HELD.format(find)}" if find in MASSES and inputs[find].given is None else ""
+        beside_a_load = find in MASSES and not inputs[find].number and any(inputs[x].number for x in MASSES)
+        loads = f"; {LOADS_HELD.format(find)}" if beside_a_load else ""
         raise SceneError("find", find, f"needs a measured motion: a, or two of {', '.join(FALL)}{loads}")
     if len(fall) > 1 and (excess := [name for name in given if name not in fall[:2]]):
         rule = f"is one too many beside {fall[0]} and {fall[1]}, which give the acceleration; leave one out"
@@ -105,7 +106,8 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
     M, I, mu, has_axle_friction = scene.M, scene.I, scene.mu, decided.has_axle_friction
     match finds:
         case "m1" | "m2" if M == inf or (scene.motion.a == 0 and has_axle_friction):
-            return f"says nothing about {finds} on a pulley at rest; {LOADS_HELD.format(finds)}"
+            way = LOADS_HELD.format(finds) if scene.m1 or scene.m2 else f"give {finds}"
+            return f"says nothing about {finds} on a pulley at rest; {way}"
         case "M" | "g" | "m1" | "m2" | "axle" if mu is not None:
             held = finds in MASSES and scene.motion.a == 0
             way = LOADS_HELD.format(finds) if held else "leave mu out"
