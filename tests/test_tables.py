@@ -201,7 +201,7 @@ def test_what_stands_around_a_table(read: Any, table: str | bytes, remark: str) 
     assert numbers(runs) == exactly("0.2 0.207 3.99 0 0 0", "0.201 0.206 5.02 0 0 0")
     assert runs.rows == [[1], [2]]
     said = remark if remark.startswith("not read") else f"read as: {remark}"
-    assert runs.remarks == ([f"{said}."] if remark else [])
+    assert [*runs.remarks, *runs.unused] == ([f"{said}."] if remark else [])
 
 
 def test_the_step_of_readings_is_that_of_the_last_digit(read: Any) -> None:
@@ -346,13 +346,26 @@ def test_tables_of_every_form_give_what_they_were_made_with(form: str) -> None:
 def test_nothing_is_left_out_in_silence(read: Any) -> None:
     """A label, a column to the right, rows of words, and a column that is a mean of the others."""
     table = "Team,m1,m2,t1,t2,t3,Note\n1.5,1,2,3,5,4,7\n2.5,1,3,2,2.5,2.25,8\n3.5,1,4,1.9,2,1.95,9\nΣx,1,4,1,1,1,\n"
-    remarks = read(table).remarks
-    assert remarks[-2:] == [
+    assert read(table).unused == [
         "not read: 'Team', 'Note'.",
         "row 4: not used, as 'Team' has a word there, and most rows a number.",
     ]
     assert read(table).doubts[-1].startswith("in each row t3 is the mean of the other repeats")
     assert not any("is the mean" in doubt for doubt in read(table.replace("2.25", "2.24")).doubts)
+
+
+def test_a_word_that_differs_between_repeats_is_doubted() -> None:
+    """Two pulleys were pooled without a word; with --only, no column and no row that is not used was named."""
+    table = "Belt,Who,t,m1 (g),m2 (g),All\nold,K1,2,90,95,x\n,K2,1.5,90,99,x\nnew,L1,2.5,90,95,x\n,L2,1.4,90,100,x\n,L3,,90,99,x\n"
+    for form in ("--only=rim_mass", "--csv"):
+        said = called(["fit", "-", "--drop", "60cm", "--axle", "0", form], table.encode()).err
+        assert (
+            "'Belt' differs between rows that are taken as repeats: is it another pulley or another load?"
+            in said
+        )
+        assert "Not read: 'Belt', 'Who'.\n" in said
+        assert "Row 5: not used, as no time was measured." in said
+        assert "'Who' differs" not in said
 
 
 @pytest.mark.parametrize(

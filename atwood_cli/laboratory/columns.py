@@ -45,7 +45,7 @@ class Columns(NamedTuple):
     """The columns of runs: those of quantities, what was measured, and the numbers of rows.
 
     ``has_numbers`` says that the first column has these, ``comma`` that commas are decimal. Cells of the
-    places ``with_units`` all have a unit. ``unread`` are other columns of numbers.
+    places ``with_units`` all have a unit. ``unread`` are other columns that differ between rows.
     """
 
     headings: Sequence[Heading]
@@ -76,8 +76,8 @@ def columns_of(sheet: Sheet, naming: Naming, given: Mapping[str, Input]) -> Colu
         raise ask(str(error)) from None
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     numbers = [] if 0 in places or not sheet.columns else sheet.numbers
-    unread = [i for i in range(len(sheet.columns)) if i not in places and sheet.has_numbers(i)]
-    unread = unread[1:] if numbers else unread
+    others = [i for i in range(1 if numbers else 0, len(sheet.columns)) if i not in places]
+    unread = [i for i in others if sheet.has_numbers(i) or len({row[i].strip() for row in sheet.rows}) > 1]
     names = {heading.name for heading in headings}
     if why := _lacking(names, given):
         if len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
@@ -85,7 +85,7 @@ def columns_of(sheet: Sheet, naming: Naming, given: Mapping[str, Input]) -> Colu
         if sum(bool(re.fullmatch(r"\d*[.,]\d+", column)) for column in sheet.columns) > 1:
             why += "; if headings that are numbers are loads, read the column of one, and give its load"
         raise ask(why)
-    if doubts := [i for i in unread if said[i] != UNREAD and may_matter(i)]:
+    if doubts := [i for i in unread if sheet.has_numbers(i) and said[i] != UNREAD and may_matter(i)]:
         which = ", ".join(named(sheet.columns[i], i) for i in doubts)
         raise ask(f"{which} may matter, and {'is' if len(doubts) == 1 else 'are'} not read")
     kind: Kind = "a" if "a" in names else "time"

@@ -80,14 +80,14 @@ def fitted(runs: Runs, shared: Conditions, names: Sequence[str]) -> Fitted:
         "the lighter side falls": runs.sign * runs.mean < 0,
         "an axle with the friction given holds the masses": abs(difference) <= held,
     }
-    shown, remarks = np.ones(len(runs.rows), dtype=bool), [*runs.remarks]
+    shown, unused = np.ones(len(runs.rows), dtype=bool), [*runs.unused]
     for reason, holds in unusable.items():
         if (shown & holds).any():
-            remarks.append(f"{runs.rows_in_words(*np.flatnonzero(shown & holds))}: not used, as {reason}.")
+            unused.append(f"{runs.rows_in_words(*np.flatnonzero(shown & holds))}: not used, as {reason}.")
         shown = shown & ~holds
     used = shown & ~runs.left_out
     columns = columns_in_doubt(runs, used)
-    runs, doubt = runs._replace(remarks=remarks, doubts=[*runs.doubts, *columns]), ""
+    runs, doubt = runs._replace(unused=unused, doubts=[*runs.doubts, *columns]), ""
     try:
         if not used.any():
             raise CannotSeparate("no run can be used")
@@ -106,7 +106,8 @@ def fitted(runs: Runs, shared: Conditions, names: Sequence[str]) -> Fitted:
             raise CannotSeparate(f"the runs do not determine {what}: {vary}")
         fit = _with_results(runs, used, shared, names)
     except CannotSeparate as error:
-        raise CannotSeparate(f"{doubt or error}{behind_an_error([*remarks, *runs.doubts])}") from None
+        how = behind_an_error([*runs.remarks, *unused, *runs.doubts])
+        raise CannotSeparate(f"{doubt or error}{how}") from None
     fit = diagnosed(fit._replace(shown=shown), is_mixed=bool(columns))
     more = [f"{doubt}."] if doubt and not fit.outliers else []
     return fit._replace(runs=runs._replace(doubts=[*runs.doubts, *more]))

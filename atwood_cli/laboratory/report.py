@@ -86,8 +86,8 @@ def notes_of(fit: Fitted) -> tuple[list[str], list[str], list[str]]:
     """Return the verdict and warnings, how the runs were read and scatter, and what may be wrong in all."""
     messages = [message for _, message in fit.outliers], fit.causes
     outliers, causes = ([f"{_capital(words)}." for words in some] for some in messages)
-    doubts, remarks = (map(_capital, some) for some in (fit.runs.doubts, fit.runs.remarks))
-    return [verdict(fit), *doubts, *outliers], [*remarks, _scatter(fit)], causes
+    doubts, remarks, unused = (map(_capital, x) for x in (fit.runs.doubts, fit.runs.remarks, fit.runs.unused))
+    return [verdict(fit), *doubts, *outliers], [*remarks, *unused, _scatter(fit)], causes
 
 
 def results_of(fit: Fitted) -> Fit:
@@ -122,7 +122,7 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
         first, _, causes = notes_of(fit)
         absent = [f"{RESULTS[x]}: {NOT_FITTED}." for x in only if record[x] is None]
         sentences = [*(equation(x, *results[x][:2]) for x in only if x in results), *absent]
-        sentences += [*first[1:], *causes]
+        sentences += [*first[1:], *map(_capital, fit.runs.unused), *causes]
     else:
         names = "quantity", "value", "uncertainty", "low", "high", "unit"
         each = ((x, *result[:2], *result.interval, QUANTITIES[x].unit) for x, result in results.items())

@@ -56,9 +56,9 @@ class Runs(NamedTuple):
     uncertainties; ``rows`` are the numbers of their rows, ``mean`` is that of the values. Columns of
     measurements: ``values`` as typed (m/s² or s), ``u_values`` (0 if no uncertainty is stated), the ``run``
     of each, and ``cells``, where they stand: 8:t2. ``step`` is that of the last digit of any value.
-    ``remarks`` say how the table was read, and ``doubts`` what may be wrong with its numbers. ``common`` has
-    the uncertainties of a mass, or a hanger, that is one in all runs. ``same`` are conditions that the table
-    has, the same in all rows.
+    ``remarks`` say how the table was read, ``unused`` what was not, and ``doubts`` what may be wrong with its
+    numbers. ``common`` has the uncertainties of a mass, or a hanger, that is one in all runs. ``same`` are
+    conditions that the table has, the same in all rows.
     """
 
     kind: Kind
@@ -73,6 +73,7 @@ class Runs(NamedTuple):
     cells: Sequence[str]
     step: float
     remarks: Sequence[str] = ()
+    unused: Sequence[str] = ()
     doubts: Sequence[str] = ()
     common: Mapping[str, float] = {}
     same: Mapping[str, Input] = {}
@@ -132,14 +133,14 @@ def read_runs(
         others.append(f"{shortened(str(hanger.given))} of hanger added to m1 and m2")
     others += sheet.remarks
     remarks = read_as(columns.headings, sheet.separator, columns.comma, others, columns.with_units)
-    if columns.unread:
-        remarks.append(f"not read: {', '.join(named(sheet.columns[i], i) for i in columns.unread)}.")
+    unread = ", ".join(named(sheet.columns[i], i) for i in columns.unread)
+    unused = [f"not read: {unread}."] if unread else []
     left_out = [*map(str, without)]
     rows = [*_rows_of(sheet, columns, by, left_out)]
     same = _same_in_all(rows)
     for reason in dict.fromkeys(row.unused for row in rows if row.unused):
-        unused = (row.number for row in rows if row.unused == reason)
-        remarks.append(f"{in_words(*unused)}: not used, as {reason}.")
+        numbers = (row.number for row in rows if row.unused == reason)
+        unused.append(f"{in_words(*numbers)}: not used, as {reason}.")
     used = [row for row in rows if not row.unused]
     heights = {read[:2] for row in used for own, read in row.cells.values() if own.name == "drop"}
     if len(heights) == 1:  # if it is wrong, it is so in all runs alike
@@ -151,14 +152,14 @@ def read_runs(
         given_by |= {x: (given_by[x][0] + hanger.number, given_by[x][1]) for x in MASSES}
         runs[tuple(given_by.items())].append(row)
     if not runs:
-        raise Unreadable(f"it has no runs{behind_an_error(remarks)}")
+        raise Unreadable(f"it has no runs{behind_an_error([*remarks, *unused])}")
     _check_uncertainties(rows, left_out)
     if left_out:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
     result = _as_columns(columns, runs, left_out)
     has_unit = {own.name for own in columns.headings if own.unit or own.place in columns.with_units}
-    doubts = _doubts(result, {**given, **same}, has_unit)
-    return result._replace(remarks=remarks, doubts=doubts, common=common, same=same)
+    doubts = [*_doubts(result, {**given, **same}, has_unit), *_words_apart(sheet, columns, runs)]
+    return result._replace(remarks=remarks, unused=unused, doubts=doubts, common=common, same=same)
 
 
 def _same_in_all(rows: Sequence[Row]) -> dict[str, Input]:
@@ -196,6 +197,19 @@ def _doubts(runs: Runs, given: Mapping[str, Input], has_unit: Collection[str]) -
     if min(m1) == max(m1) > CART * max(m2):
         doubts[""] = f"m1 is {m1[0]:.6g} kg in all rows, far above m2; if it does not hang, give 0 for m1."
     return [*doubts.values(), *_means_among_repeats(runs)]
+
+
+def _words_apart(sheet: Sheet, columns: Columns, runs: RowsOfRuns) -> list[str]:
+    """Say which column has other words in rows of one run, unless each row of the table has its own."""
+    filled = dict(zip(columns.numbers, filled_down(sheet, columns.unread).rows, strict=True))
+    apart = list[str]()
+    for i in columns.unread:
+        of_runs = ({filled[row.number][i].strip() for row in rows} - {""} for rows in runs.values())
+        is_name = sheet.has_numbers(i) or len({row[i] for row in sheet.rows}) == len(sheet.rows)
+        if not is_name and any(len(words) > 1 for words in of_runs):
+            what = f"{named(sheet.columns[i], i)} differs between rows that are taken as repeats"
+            apart.append(f"{what}: is it another pulley or another load?")
+    return apart
 
 
 def _means_among_repeats(runs: Runs) -> list[str]:
