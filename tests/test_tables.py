@@ -245,9 +245,9 @@ ASKED = [
     ("batch --only a --column M=Rolle", "m1,m2,M,Rolle\n1,3,10,20\n", "column 'Rolle' holds M, as 'M' does; read one", "m1,m2,M,?"),
     ("batch --only a", "\"Mass\n(kg)\",m1,m2\n5,1,3\n", "column 'Mass (kg)' may mean M (mass of the pulley)", "?,m1,m2"),
     ("fit --drop 1", "m1,m2,t1,t2,t3,t\n1,2,3,4,5,4\n", "column 't' stands beside 't1', and one may be computed, as a mean is", "m1,m2,t1,t2,t3,?"),
-    ("fit", "Masse 1;Masse 2;Zeit\n0,2;0,207;3,99\n", "a (or t and drop) is missing", "m1,m2,?|drop"),
+    ("fit", "Masse 1;Masse 2;Zeit\n0,2;0,207;3,99\n", "a (or t and drop) is missing", "m1,m2,?"),
     ("fit", "m1 (g);Masse 2 (g);t\n200;207,5;3,99\n", "drop is missing", "m1:g,m2:g,t|drop"),
-    ("fit", "0.2,0.207,3.99\n0.21,0.22,4\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing", "?,?,?|drop"),
+    ("fit", "0.2,0.207,3.99\n0.21,0.22,4\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing", "?,?,?"),
     ("fit", "m1,m2,a,m_1\n1,2,3,4\n", "column 'm_1' holds m1, as 'm1' does; read one", "m1,m2,a,?"),
     ("fit", "m1,m2,t1,time 1\n1,2,3,4\n", "column 'time 1' holds time, as 't1' does; are they repeats?", "m1,m2,t1,?|drop"),
     ("fit", "m1,m2,a,Δm\n1,2,3,4\n", "'Δm' may matter, and is not read", "m1,m2,a,?"),
@@ -267,14 +267,14 @@ ASKED = [
     ("fit --column t=Zeit", "Masse 1;Masse 2;Höhe (cm);Zeit\n1;2;3;4\n", "drop is missing", "m1,m2,drop:cm,t1"),
     ("fit", "Höhe (cm),links (g),rechts (g),Zeit (s)\n1,2,3,4\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing", "drop:cm,?,?,t:s"),
     ("fit", "m1,m2,a theo (cm/s²),a exp (cm/s²)\n1,2,3,4\n", "a (or t and drop) is missing", "m1,m2,a:cm/s2?,a:cm/s2?"),
-    ("fit", "m1,m2,a_measured\n1,2,3\n", "a (or t and drop) is missing", "m1,m2,?|drop"),
+    ("fit", "m1,m2,a_measured\n1,2,3\n", "a (or t and drop) is missing", "m1,m2,?"),
     ("fit --drop 1m", "M (g),m (g),t\n100,110,2.5\n", "m1 (0 if nothing hangs there), m2 are missing", "M:g,?,t"),
     ("fit --drop 1m", "m1,m2,Mean (s),Trial 1 (s),Trial 2 (s)\n1,2,3,4,2\n", "a (or t and drop) is missing", "m1,m2,t:s?,t:s?,t:s?"),
     ("fit --drop 1m", "m1,m2,Trial 1,Trial 2,Mean\n1,2,3,4,5\n", "a (or t and drop) is missing", "m1,m2,?,?,?"),
     ("fit --drop 1m", "m1,m2,1st trial,2nd trial,Mean\n1,2,3,4,5\n", "a (or t and drop) is missing", "m1,m2,?,?,?"),
     ("fit", "m1,m2,h (cm),v (m/s)\n1,2,3,4\n", "a (or t and drop) is missing", "m1,m2,drop:cm,?"),
     ("fit", "Beban : 0,09 kg;;;\nr : 0,06 m;;;\nMasa 1 (kg);Masa 2 (kg);Jarak (m);Waktu (s)\n0,09;0,10;0,4;1,5\n", "a (or t and drop) is missing", "m1:kg,m2:kg,drop:m,t:s"),
-    ("fit", "Plan A;;;\nlinks;rechts;Weg;Zeit\n0,09;0,10;0,4;1,5\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing", "?,?,?,?|drop"),
+    ("fit", "Plan A;;;\nlinks;rechts;Weg;Zeit\n0,09;0,10;0,4;1,5\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing", "?,?,?,?"),
     ("fit --drop 1", "m1,m2,t,,m1,m2,t\n1,2,3,,1,3,2\n", "column 'm1' holds m1, as another of that heading does; read one", "m1,m2,t,-,?,?,?"),
     ("batch", "m1 (g),m2 (g),m3 (g)\n500,510,50\n", "column 'm3 (g)' may mean M (mass of the pulley)", "m1:g,m2:g,?"),
     ("fit --drop 0.5", "m1 (g),m2 (g),t,Δm (g)\n200,220,1.72,20\n", "'Δm (g)' may matter, and is not read", "m1:g,m2:g,t,?"),
@@ -283,6 +283,9 @@ ASKED = [
     ("fit --drop 1m", "Wurf;0,02;0,03\n1;1,4;1,2\n", "m1 (0 if nothing hangs there), m2, a (or t and drop) are missing; if headings that are numbers are loads, read the column of one, and give its load", "-,?,?"),
     ("fit --m1 0 --m2 50g --drop 1m", "T (s),T (s)\n1,2\n", "column 'T (s)' holds time, as another of that heading does; are they repeats?", "t:s,?"),
     ("fit --m1 0 --m2 50g --drop 1m --column 't=T(s)'", "T(s),T(s)\n1,2\n", "2 columns have the heading 'T(s)'", "t:s,?"),
+    ("fit --drop 1m", "m1 (g);m2 (g);acc. [m/s²];durée [s]\n90;95;0,2;3,2\n90;99;0,4;2,3\n", "a (or t and drop) is missing", "m1:g,m2:g,-,t:s"),
+    ("fit", "m1 (g);m2 (g);durée [s];acc. [m/s²]\n90;95;3,2;0,2\n90;99;2,3;0,4\n", "a (or t and drop) is missing", "m1:g,m2:g,-,a:m/s2"),
+    ("fit --drop 60cm", "m1 (g);m2 (g);acc. [m/s²]\n90;95;0,2\n90;99;0,4\n", "a (or t and drop) is missing", "m1:g,m2:g,a:m/s2"),
     ("batch", "m1,m2,Kąt [°]\n1,3,270\n", "column 'Kąt [°]' may mean wrap (angle over which the string touches the pulley)", "m1,m2,?"),
 ]  # fmt: skip
 """Tables that are not understood: why, and the words of --columns to type, with options that are missing behind them."""
@@ -304,6 +307,31 @@ def test_what_is_not_understood_is_asked_once(command: str, table: str, why: str
         assert called(shlex.split(again.err.splitlines()[-1])[1:], table.encode()).status < 2
     assert ("first cells" in again.err) == ("?" in columns or bool(options))
     assert max(map(len, listing)) <= 80
+
+
+BY_BLANKS, IN_WORDS = (
+    b"m1 (g)  m2 (g)  t (s)\n90  95  3.2\n90  99  2.3\n",
+    b"A: 90 g,B: 95 g\nt A: 3 s,t B: 2 s\n",
+)
+
+
+@pytest.mark.parametrize("options", ["", "--columns=-", "--columns=?", "--columns=m2:g --m1=?"])
+def test_a_table_without_columns_of_numbers_is_to_be_written_anew(options: str) -> None:
+    """The command that was printed led back to itself."""
+    anew = "no column has such numbers: write a heading above each, as m1 (g),m2 (g), and one number a cell\n"
+    for table in (BY_BLANKS, IN_WORDS) if "m2" not in options else (BY_BLANKS,):
+        ran = called(["fit", "-", "--drop", "80cm", *options.split()], table)
+        assert (ran.status, ran.out) == (1, "")
+        assert ran.err.endswith(anew)
+
+
+def test_a_height_is_taken_beside_accelerations() -> None:
+    """The command of a listing keeps --drop, as a column may be t or a, and this was refused."""
+    table = b"m1 (g),m2 (g),acc. (m/s2)\n90,95,0.2\n90,99,0.4\n"
+    asked = called(["fit", "-", "--drop", "1m", "--axle", "0", "--only", "rim_mass"], table)
+    ran = called(shlex.split(asked.err.splitlines()[-1])[1:], table)
+    assert ran.status == 0
+    assert "The height of fall: not used, as accelerations were measured." in ran.err
 
 
 RIM, FRICTION = 0.03, 0.008  # kg, N

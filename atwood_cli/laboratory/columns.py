@@ -99,10 +99,8 @@ def columns_of(sheet: Sheet, naming: Naming, given: Mapping[str, Input]) -> Colu
 
 def _lacking(names: Collection[str], given: Mapping[str, Input]) -> str:
     """Return what runs lack, in words. Raises SceneError for what the table and the options both have."""
-    typed = [x for x in given if given[x].given is not None]
-    has = {x: "a" if x == "drop" and "a" in names else x for x in typed}
-    if double := [x for x in has if has[x] in names]:
-        rule = f"is not needed, as the table has {has[double[0]]}; leave it out"
+    if double := [x for x in given if x in names and given[x].given is not None]:
+        rule = f"is not needed, as the table has {double[0]}; leave it out"
         raise SceneError(double[0], given[double[0]].given, rule)
     missing = ", ".join(_missing({*names, *given})).replace("m1", "m1 (0 if nothing hangs there)")
     missing = re.sub("time, a(, drop)?", "a (or t and drop)", missing)

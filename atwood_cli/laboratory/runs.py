@@ -135,6 +135,9 @@ def read_runs(
     remarks = read_as(columns.headings, sheet.separator, columns.comma, others, columns.with_units)
     unread = ", ".join(named(sheet.columns[i], i) for i in columns.unread)
     unused = [f"not read: {unread}."] if unread else []
+    if columns.kind == "a" and "drop" in shared:
+        del shared["drop"]
+        unused.append("the height of fall: not used, as accelerations were measured.")
     left_out = [*map(str, without)]
     rows = [*_rows_of(sheet, columns, by, left_out)]
     same = _same_in_all(rows)

@@ -25,6 +25,10 @@ from .sources import Unreadable
 WIDTH, WIDEST_HEADING, FIRST_CELLS = 80, 26, 3
 UNIT_OF_CELL = re.compile(r"[\W\d]*(.*?)[)\]]?")
 """A cell, or what stands where units do: 150 g, (cm)."""
+SEVERAL = re.compile(r"\d\s+[-+.,]?\d")
+NO_SUCH_NUMBERS = (
+    "no column has such numbers: write a heading above each, as m1 (g),m2 (g), and one number a cell"
+)
 A_NAMING = r""" --(?:\w+ '\?'|(?:columns?|label)[ =](?:'[^']*'|"[^"]*"|[^\s'"])+)"""
 """An option of a command line that says what columns are, or is open."""
 
@@ -95,8 +99,12 @@ def asked(
     left = [i for i, word in enumerate(words) if word == UNREAD and sheet.has_numbers(i)]
     left = [i for i in left if i or not sheet.numbers]
     units = {x: {i: unit for i in left if (unit := unit_of_column(sheet, i, x))} for x in missing}
+    if units.get("time") and units.get("a"):  # one may be computed from the other
+        units["a" if units.get("drop", " ") else "time"] = {}
     options = [x for x in missing if not units[x] and x not in vocabulary.repeated]
-    is_unclear = {*options} - {"drop"} or not any(units.get(x, " ") for x in ("time", "a"))
+    options = [x for x in options if x != "drop" or not units.get("a")]  # without a time no height is needed
+    nothing_measured = not any(units.get(x, " ") for x in ("time", "a"))
+    is_unclear = {*options} - {"drop"} or nothing_measured
     for i in left:
         fits = [x for x in missing if i in units[x]]
         if len(fits) == 1:
@@ -104,11 +112,11 @@ def asked(
             words[i] = f"{_short(fits[0])}:{units[fits[0]][i]}{'' if is_only else OPEN}"
         elif fits or is_unclear or (said[i] != UNREAD and may_matter(i)):
             words[i] = OPEN
-    if units.get("a"):  # without a time no height is needed
-        options = [x for x in options if x != "drop"]
-    if OPEN in [words[i] for i in left]:
-        options = [x for x in options if x == "drop"]
-    return NotUnderstood(why, sheet, words, options)
+    is_by_blanks = len(words) == 1 and any(SEVERAL.search(row[0]) for row in sheet.rows)
+    if is_by_blanks or (nothing_measured and OPEN not in words):
+        return Unreadable(f"{why}; {NO_SUCH_NUMBERS}")
+    is_open = OPEN in [words[i] for i in left] and [*missing] != ["drop"]
+    return NotUnderstood(why, sheet, words, [] if is_open else options)
 
 
 def unit_of_column(sheet: Sheet, place: int, name: str) -> str:
