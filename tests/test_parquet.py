@@ -162,7 +162,7 @@ def test_a_frame_of_dask_is_solved_when_it_is_computed() -> None:
     right = solve_table(frame, ["regime", "a"])
     assert lazy.compute().equals(right)
     assert dict(lazy.dtypes) == dict(right.dtypes)
-    with pytest.raises(ValueError, match=r"^cannot read the table: it lacks m2; there are 'm1'$"):
+    with pytest.raises(ValueError, match=r"^cannot read the table: m2 is missing; there are 'm1'$"):
         solve_table(from_pandas(frame[["m1"]], npartitions=1))
     for series in (frame["m1"], from_pandas(frame, npartitions=1)["m1"]):
         with pytest.raises(
@@ -179,9 +179,9 @@ AGAIN = "it has columns with the names of results: 'error'; leave them out to so
     [
         *((table, f"the table is of type {type(table).__name__}; give a data frame of polars, pandas or dask") for table in ([1], pl.Series([1]), TABLE.to_dict())),
         (TABLE.with_columns(m2=True), "cannot read the table: column m2 holds Boolean, not numbers"),
-        (TABLE.drop("m2"), "cannot read the table: it lacks m2; there are 'id', 'm1 (g)', 'M', 'x'"),
-        (TABLE.rename({"M": "M (u)"}), f"cannot read the table: column 'M (u)' has the unit 'u'; it takes {', '.join([*UNITS['mass'], *UNITS['force']])}; rename it"),
-        (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' may mean R (radius of the pulley); rename it"),
+        (TABLE.drop("m2"), "cannot read the table: m2 is missing; there are 'id', 'm1 (g)', 'M', 'x'"),
+        (TABLE.rename({"M": "M (u)"}), f"cannot read the table: column 'M (u)' has the unit 'u'; it takes {', '.join([*UNITS['mass'], *UNITS['force']])}; there are 'id', 'm1 (g)', 'm2', 'M (u)', 'x'"),
+        (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' may mean R (radius of the pulley); there are 'radius', 'm1 (g)', 'm2', 'M', 'x'"),
         (TABLE.rename({"id": "error"}), f"cannot read the table: {AGAIN}"),
     ],
 )  # fmt: skip

@@ -197,7 +197,10 @@ def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tall
         table = pl.scan_parquet(source)
         schema = table.collect_schema()
         total = int(table.select(pl.len()).collect().item())
-        first = [[str(cell) for cell in row] for row in table.head(ROWS_SHOWN).collect().rows()]
+        head = table.head(ROWS_SHOWN).collect()
+        # Values of other types say nothing of an input, and Python may have none that are so large.
+        texts = (x.to_list() if x.dtype.is_numeric() or x.dtype == pl.String else [""] * len(x) for x in head)
+        first = [[*map(str, row)] for row in zip(*texts, strict=True)]
         columns = read_columns(schema.names(), job.wanted, rows=first)
         head = with_results(pl.DataFrame(schema=schema), columns, job.wanted)
         parts = table.collect_batches(maintain_order=True)
