@@ -103,7 +103,9 @@ def _lacking(names: Collection[str], given: Mapping[str, Input]) -> str:
         rule = f"is not needed, as the table has {double[0]}; leave it out"
         raise SceneError(double[0], given[double[0]].given, rule)
     missing = ", ".join(_missing({*names, *given})).replace("m1", "m1 (0 if nothing hangs there)")
-    missing = re.sub("time, a(, drop)?", "a (or t and drop)", missing)
+    if missing == "time, a":
+        return "say which columns are t or a"
+    missing = missing.replace("time, a, drop", "a (or t and drop)").replace("time, a", "t (or a)")
     return f"{missing} {'are' if ', ' in missing else 'is'} missing" if missing else ""
 
 
