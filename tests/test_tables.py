@@ -280,7 +280,7 @@ ASKED = [
     ("fit --drop 0.5", "m1 (g),m2 (g),t,Δm (g)\n200,220,1.72,20\n", "'Δm (g)' may matter, and is not read", "m1:g,m2:g,t,?"),
     ("batch --only a", "m1 (g),m2 (g),dm (g),∆m (g),x\n500,510,10,10,7\n", "column 'dm (g)' may mean M (mass of the pulley)", "m1:g,m2:g,?,?"),
     ("fit --drop 0.5", "m1 (g),m2 (g),t 1st,t 2nd,t\n200,220,1.7,1.74,1.72\n", "column 't' stands beside 't 1st', and one may be computed, as a mean is", "m1:g,m2:g,t1,t2,?"),
-    ("fit --drop 1m", "Wurf;0,02;0,03\n1;1,4;1,2\n", "m1 (0 if nothing hangs there), m2, t (or a) are missing; if headings that are numbers are loads, read the column of one, and give its load", "-,?,?"),
+    ("fit --drop 1m", "Wurf;0,02;0,03\n1;1,4;1,2\n", "m1 (0 if nothing hangs there), m2, t (or a) are missing; if headings that are numbers are loads, type one command a load, as --columns drop:m,-,t --m2 60g", "-,?,?"),
     ("fit --m1 0 --m2 50g --drop 1m", "T (s),T (s)\n1,2\n", "column 'T (s)' holds time, as another of that heading does; are they repeats?", "t:s,?"),
     ("fit --m1 0 --m2 50g --drop 1m --column 't=T(s)'", "T(s),T(s)\n1,2\n", "2 columns have the heading 'T(s)'", "t:s,?"),
     ("fit --drop 1m", "m1 (g);m2 (g);acc. [m/s²];durée [s]\n90;95;0,2;3,2\n90;99;0,4;2,3\n", "say which columns are t or a", "m1:g,m2:g,-,t:s"),

@@ -25,6 +25,7 @@ from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable
 
 Kind = Literal["a", "time"]
+ONE_LOAD = "type one command a load, as --columns drop:m,-,t --m2 60g"
 MEASURED = {"a": "acceleration", "time": "time"}
 """The quantities that are measured, which may be repeated in further columns."""
 WORDS = {"m1": "m1", "m2": "m2", "drop": "drop h height", "a": "a acceleration", "time": "t time"}
@@ -83,7 +84,7 @@ def columns_of(sheet: Sheet, naming: Naming, given: Mapping[str, Input]) -> Colu
         if len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
             raise Unreadable(f"{why}: make each run a row, below headings, as m1 (g),m2 (g),t (s)")
         if sum(bool(re.fullmatch(r"\d*[.,]\d+", column)) for column in sheet.columns) > 1:
-            why += "; if headings that are numbers are loads, read the column of one, and give its load"
+            why += f"; if headings that are numbers are loads, {ONE_LOAD}"
         raise ask(why)
     if doubts := [i for i in unread if sheet.has_numbers(i) and said[i] != UNREAD and may_matter(i)]:
         which = ", ".join(named(sheet.columns[i], i) for i in doubts)

@@ -12,6 +12,7 @@ from ..numbers.digits import format_number
 from ..numbers.text import shortened
 from ..solver import physics
 from ..solver.scene import parameter_of
+from .columns import ONE_LOAD
 from .estimate import (
     TINY,
     Conditions,
@@ -277,7 +278,7 @@ def columns_in_doubt(runs: Runs, used: Selection) -> list[str]:
     rounding = float(np.mean((runs.step / values[places]) ** 2)) / 12
     p_value, spread = spread_of_columns(np.log(values[places]), runs.run[places], column, rounding)
     words = f"columns {shortened(', '.join(names))} differ as a whole: are they of one pulley and one load?"
-    return [words] if p_value < RARE and spread > WIDE_SPREAD else []
+    return [f"{words} If not, {ONE_LOAD}."] if p_value < RARE and spread > WIDE_SPREAD else []
 
 
 # Runs that no pulley has
