@@ -541,7 +541,7 @@ def test_nothing_is_cut_from_the_picture(tmp_path: Path, table: str, more: str) 
     assert (pages[0].get_suptitle() == "") == ("--bare" in more)
 
 
-@pytest.mark.parametrize(("rows", "repeats"), [(800, 1), (6, 200)])
+@pytest.mark.parametrize(("rows", "repeats"), [(800, 1), (12, 200)])
 def test_time_grows_as_the_rows_do(rows: int, repeats: int) -> None:
     """20,000 rows took 41 s, as the square of their number; a large part were said to be odd."""
     random, seconds = np.random.default_rng(20_000), []
