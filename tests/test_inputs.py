@@ -30,6 +30,8 @@ def error(**given: Any) -> str:
 NOT_A_NUMBER = "is not a number; write it like 2, 1/3 or 1.5e-3"
 FINITE = "must be 0 or more, and finite"
 TYPES = "must be text or a number (str, int, float, Decimal, Fraction)"
+UNCERTAIN = """is not a number with its uncertainty; write it like 1.000±0.002, 1.000+-0.002 or 1.000(2), without a point in \
+the brackets, and a unit after that"""
 TOO_LONG = "is too long; numerator and denominator may have 1500 digits"
 RULES: list[tuple[str, list[Any], str]] = [
     ("m1", [-1.5, nan, inf, Decimal("sNaN")], FINITE),
@@ -38,6 +40,8 @@ RULES: list[tuple[str, list[Any], str]] = [
     ("m1", [Decimal("1e9999999"), f"1.{'1' * 999}/{'7' * 999}e500"], TOO_LONG),
     ("m1", ["4" * 1000 + "lb"], "has 1008 digits, its unit included; at most 1000 are taken"),
     ("m1", [f"1 kg{'*st^9' * 20_000}"], NOT_A_NUMBER),
+    ("m1", ["1.0()", "1±", "1±-1", "1g±1", "1kg±1g", "inf±1"], UNCERTAIN),
+    ("g", ["moon±0.1"], UNCERTAIN),
     ("a", [nan, -inf], "must be finite"),
     ("digits", [0, -1, 1001, 2.5, "", "six", "99999", True], "must be a whole number from 1 to 1000"),
     ("axle", [(1, "N")], TYPES),
