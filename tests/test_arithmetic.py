@@ -154,23 +154,6 @@ def test_exact_fractions_refuse_to_leave_the_rationals() -> None:
         _ = EXACT.pi
 
 
-@pytest.mark.parametrize("rate", [1, 2000])
-def test_a_root_is_found_in_few_steps_where_the_function_is_far_from_straight(rate: int) -> None:
-    """Regula falsi took 4080 evaluations of such a function, 7 s of one solve."""
-    at, calls = enclosures(400), 0
-
-    def f(s: Enclosure) -> Enclosure:
-        nonlocal calls
-        calls += 1
-        return at.expm1(rate * s) + 1 - (at.expm1(at.number(rate)) + 1) / 2
-
-    root = at.root(f, at.number(1))
-    assert calls < 60
-    with mpmath.workdps(420):
-        assert contains(root, 1 - mpmath.log(2) / rate)
-    assert tight(root, 390)
-
-
 @given(st.fractions(Fraction(1, 100), Fraction(99, 100)))
 def test_a_root_is_enclosed_where_the_function_is_flat(exact: Fraction) -> None:
     """Signs of (s - r)³, multiplied out, are certain only a third of the digits away from r."""

@@ -14,13 +14,11 @@ from itertools import count
 from pathlib import Path
 from random import Random
 from typing import Any
-from unittest.mock import patch
 
 import polars as pl
 import pytest
 
 from atwood_cli import SceneError, solve, solve_table
-from atwood_cli.batch import solving
 from atwood_cli.cli import run
 from atwood_cli.reading.units import UNITS
 from atwood_cli.tables import sources
@@ -171,13 +169,6 @@ def test_what_is_large_and_a_table(batch: Batch) -> None:
     assert batch(f"m1,m2,M ({'kg' * 100_000})\n1,3,7\n", "--only regime").out.endswith("\n1,3,7,no-slip,\n")
     deep = batch("[" * 100_000, "--only regime", "in.ndjson")
     assert json.loads(deep.out)["error"].endswith("is not a line of NDJSON: it is nested too deeply")
-
-
-def test_what_is_wrong_with_rows_that_are_alike_is_found_once(batch: Batch) -> None:
-    """It takes 25 us a row: two million of them took a minute."""
-    with patch.object(solving, "_solve_row", wraps=solving._solve_row) as why:
-        ran = batch("m1,m2,note\n" + "1,-1,a\n1,3,b\n1,,c\n" * 50)
-    assert why.call_count == len({*errors_of(ran)} - {""}) == 2
 
 
 def test_one_bad_line_of_ndjson_is_one_bad_row(batch: Batch, tmp_path: Path) -> None:

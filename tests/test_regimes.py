@@ -97,13 +97,6 @@ def test_what_is_said_of_any_parameter_is_so(seed: int, name: str, log_: str) ->
     check_with_oracle(words)
 
 
-def test_what_is_known_is_not_asked_again() -> None:
-    swept = read_sweep({"m1": "1", "m2": "3", "M": "0:40:2", "mu": "0.3"})
-    said = {Fraction(0): "slip"}  # as if
-    (change,) = changes(swept.scene, swept.ranges[0], known=said)
-    assert (change.before, Fraction(change.at), change.after) == ("slip", Fraction(0), "no-slip")
-
-
 @examples(40)
 @given(st.floats(1e-3, 1e3), st.floats(1.01, 100), st.floats(0.01, 0.99))
 def test_motion_is_continuous_where_slip_begins(m1: float, ratio: float, share: float) -> None:

@@ -176,6 +176,7 @@ def test_nothing_of_a_file_does(tmp_path: Path, typed: str, content: str) -> Non
 
 
 TYPED = ["a" * 10**5, "1 kg" + "*st^9" * 20_000, "1" * 10**5, "1," * 20_000 + "x", "x " * 50_000, "-" * 10**5]
+TYPED += [unit * 10_000 for unit in ("9", " ", "(", "1/", "1(2)", "a_", "pi", '"', "kg*", "m1 in ")]
 TYPED += ["\x1b[31m\x1b]0;a\x07\x9b2J\u202e\nx"]
 LINES = """
 solve --m1 1 --m2 3 --M {}|solve --m1 1 --m2 3 --wrap {}|solve --m1 1 --m2 3 --I {}|contact --m1 1 --m2 3 --M {}

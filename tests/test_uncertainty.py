@@ -9,18 +9,16 @@ from itertools import chain
 from math import inf
 from random import Random
 from typing import Any
-from unittest.mock import patch
 
 import pytest
 
 from atwood_cli import SceneError, solve
 from atwood_cli.numbers.digits import rounding_to_uncertainty, to_digits, with_uncertainty
 from atwood_cli.reading.inputs import read_input
-from atwood_cli.solver.decisions import Decisions
 from atwood_cli.solver.scene import Input
 
 from .conftest import many
-from .tools.running import LOADED, called, process
+from .tools.running import LOADED, process
 from .tools.scenes import inputs, of_all_kinds, with_friction
 
 # How they are typed
@@ -182,10 +180,3 @@ def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
         assert (json.loads(ran.out)["uncertainty"] is not None) == loaded
     assert solve(m1="1", m2="3").uncertainty == {}
     assert hash(solve(m1="1", m2="3")) == hash(solve(m1="1", m2="3.0"))
-
-
-def test_each_scene_is_solved_once() -> None:
-    """The scenes an uncertainty away were made twice, for values and for doubts."""
-    with patch("atwood_cli.solver.answers.Decisions", wraps=Decisions) as made:
-        called("solve --m1 1.00(1) --m2 3.00(2) --M 10 --mu 0.3 --expect no-slip".split())
-    assert made.call_count == len({str(call.args[0]) for call in made.call_args_list}) == 9

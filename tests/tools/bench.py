@@ -1,31 +1,27 @@
 """Long tables, beside the same model in plain doubles: python -m tests.tools.bench [ROWS]
 
-For each family of rows, the nanoseconds of processor time a row: the least of some runs, which take turns. Behind
-these, the median of the ratios to plain doubles, run by run. Plain doubles run on whole arrays, and in tiles that fit
-the cache. Where rows take long, they are fewer. Brackets have nanoseconds on the clock, as there are threads. Then
-`atwood batch` on files of so many ordinary rows: rows a second of processor time, and the largest memory.
-`atwood tradeoff` measures shorter tables, also very near to slipping.
+For each family of rows, the nanoseconds of processor time a row, the least of some runs, and the median of its ratios
+to plain doubles, run by run, as the runs take turns. Then `atwood batch` on files of so many ordinary rows: rows a
+second of processor time, and the largest memory. `atwood tradeoff` measures shorter tables, also very near to slipping.
 """
 
 import subprocess
 import sys
 from collections.abc import Callable
-from functools import partial
 from statistics import median
 from tempfile import TemporaryDirectory
-from time import perf_counter, process_time
+from time import process_time
 from typing import Any
 
 import numpy as np
 import polars as pl
 
 from atwood_cli import solve_arrays
-from atwood_cli.solver.quantities import ACCURACIES, STANDARD
+from atwood_cli.solver.quantities import ACCURACIES
 from atwood_cli.tradeoff.measure import in_numpy
 
 Columns = dict[str, Any]
-ROUNDS, LONG = 5, 0.3  # seconds: rows that take as long are enough
-TILE_ROWS = 8192
+ROUNDS = 5
 
 
 def uniform(least: float, most: float, rows: int) -> Any:
@@ -39,45 +35,23 @@ def ordinary(rows: int) -> Columns:
     return {"m1": m1, "m2": m2, "M": 10 ** rng.uniform(-2, 3, rows), "mu": 10 ** rng.uniform(-2, 0.3, rows)}
 
 
-FAMILIES: dict[str, Callable[[int], Columns]] = {
-    "ordinary": lambda rows: {},
-    "beside an axle": lambda rows: {"axle": 10 ** uniform(-2, 3, rows)},
-    "a wrap each row": lambda rows: {"wrap": uniform(1, 720, rows)},
-    "M over 1e±300": lambda rows: {"M": 10 ** uniform(-300, 300, rows)},
-    "bounds of friction": lambda rows: {"quantities": ["friction_force_min", "friction_force_max"]},
+FAMILIES: dict[str, tuple[int, Callable[[int], Columns]]] = {
+    "ordinary": (1, lambda rows: {}),
+    "beside an axle": (1, lambda rows: {"axle": 10 ** uniform(-2, 3, rows)}),
+    "a wrap each row": (10, lambda rows: {"wrap": uniform(1, 720, rows)}),
+    "M over 1e±300": (100, lambda rows: {"M": 10 ** uniform(-300, 300, rows)}),
+    "bounds of friction": (5000, lambda rows: {"quantities": ["friction_force_min", "friction_force_max"]}),
 }
-"""What rows have that are not ordinary."""
+"""By how many times fewer the rows are, as they take long, and what they have that is not ordinary."""
 
 
-def taken_by(work: Callable[[], object]) -> tuple[float, float]:
-    """Seconds of processor time, and on the clock, without the end of its results."""
-    clock, processor = perf_counter(), process_time()
-    kept = work()
-    taken = process_time() - processor, perf_counter() - clock
+def taken_by(solve: Callable[..., object], columns: Columns) -> float:
+    """Seconds of processor time, without the end of the results."""
+    begun = process_time()
+    kept = solve(**columns)
+    taken = process_time() - begun
     del kept
     return taken
-
-
-def in_tiles(**columns: Any) -> Columns:
-    """Plain doubles, so many rows at a time that intermediate values stay in the cache."""
-    results = {name: np.empty(len(columns["m1"])) for name in STANDARD}
-    for start in range(0, len(columns["m1"]), TILE_ROWS):
-        rows = slice(start, start + TILE_ROWS)
-        for name, values in in_numpy(**{x: column[rows] for x, column in columns.items()}).items():
-            results[name][rows] = values
-    return results
-
-
-def compared(more: Callable[[int], Columns], accuracy: Any, most: int) -> tuple[int, Any]:
-    """The rows that are enough, and by run what they take in plain doubles, in tiles, and with an accuracy."""
-    rows = 10
-    while True:
-        rows = min(10 * rows, most)
-        plain = ordinary(rows)
-        ours = partial(solve_arrays, **plain | more(rows), accuracy=accuracy)
-        if rows == most or taken_by(ours)[1] >= LONG:
-            works = (partial(in_numpy, **plain), partial(in_tiles, **plain), ours)
-            return rows, np.array([[taken_by(work) for work in works] for _ in range(ROUNDS + 1)][1:])
 
 
 def batch(kind: str, rows: int) -> str:
@@ -98,14 +72,15 @@ def batch(kind: str, rows: int) -> str:
 
 
 def main(most: int) -> None:
-    for family, more in FAMILIES.items():
+    for family, (fewer, more) in FAMILIES.items():
+        rows = most // fewer
+        plain = ordinary(rows)
         for accuracy in ACCURACIES:
-            rows, runs = compared(more, accuracy, most)
-            (plain, tiles, ours), (*_, on_clock) = (runs.min(0) * 1e9 / rows).T
-            ratio = median(runs[:, 2, 0] / runs[:, 0, 0])
+            ours = plain | more(rows) | {"accuracy": accuracy}
+            runs = [(taken_by(in_numpy, plain), taken_by(solve_arrays, ours)) for _ in range(ROUNDS + 1)][1:]
+            least, ratio = min(taken for _, taken in runs), median(taken / plainly for plainly, taken in runs)
             print(
-                f"{family:18} {accuracy:9} {rows:8} rows: {ours:9.1f} ns a row ({on_clock:.1f}),"
-                f" plain {plain:5.1f}, in tiles {tiles:5.1f}: {ratio:.3f} of plain"
+                f"{family:18} {accuracy:9} {rows:8} rows: {least * 1e9 / rows:9.1f} ns a row, {ratio:.3f} of plain"
             )
     print(*(batch(kind, most) for kind in ("csv", "parquet")), sep="\n")
 

@@ -32,6 +32,7 @@ EDGES = [
     *"0 -0 -1 inf -inf INF nan 1e500 1e-500 1e501 1e-501 1e9999999 1e308 1.8e308 4.9e-324 1e-400 .5 5. +2".split(),
     *"1e 1e+ 0x10 1_000 1,5 1,000 1.2.3 １ ٣ −1 ½ -- - = : ( ) ± % '' \" \\ moon disk hoop None".split(),
     *("", " ", " 1 ", "1\xa0kg", "\x1b[31m", "\udcff", "1\n", "1\t2", "0." + "3" * 500, "1kg" + " t^9/ug^9" * 5),
+    *(unit * 9_999 for unit in ("(", "1/", "1(2)", "1,", "a_", '"', "kg*", "m1 in ")),
     *("9" * 1001, "1" * 100_000, "m1:" * 30_000, "--" + "m1" * 50_000, "1 kg" + "*st^9" * 20_000),
 ]
 SOME_UNITS = "kg g lb t mg µg m cm mm in ft deg rad turn ° % s ms N m/s2 m/s² x µ kgg".split()
