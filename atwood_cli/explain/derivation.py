@@ -10,19 +10,17 @@ Whatever an equation rests on stands above it; (1) is in every derivation. An eq
 - `(27) mu_verge`: a value of the model, with its formula and numbers, if it exists and was not shown;
 - `half_sine from φ`: a value without its formula, and the symbols that it rests on;
 - `(4) c = rim_mass(m1 m2 a g b)`: an input that follows by a function of `physics`, with numbers put in;
-- `(34) pulley_mass_in_the_paper(m1 m2 k) = M*`: the formula for a symbol, without numbers;
+- `(33') gripping_ratio_minus_1(m1 m2 c b D) = k - 1`: the formula for a symbol, without numbers;
 - `(1) T1 - m1 g = m1 a`, or `α = 0 from b`: letters as they are, and the symbols that they rest on.
 """
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from fractions import Fraction
 from importlib.resources import files
 from itertools import combinations
 from operator import mul, truediv
 from typing import Any, NamedTuple
 
-from ..numbers.rational import N
 from ..solver import physics
 from ..solver.answers import Answers
 from ..solver.quantities import REGIMES
@@ -148,42 +146,16 @@ def _equation(derivation: Derivation, line: str) -> Iterator[Equation]:
         yield Equation(label, left, right, follows)
 
 
-def ratio_in_the_paper(l: N, h: N, M: N) -> N:
-    """Return T_h/T_l of a string that grips a disk, as (33) has it; 1 + `gripping_ratio_minus_1`."""
-    return (4 * l + M) * h / ((4 * h + M) * l)
-
-
-def pulley_mass_in_the_paper(l: N, h: N, k: N) -> N:
-    """Return the mass (kg) of a disk above which the string slips, as (34) has it; `critical_pulley_mass`."""
-    return 4 * l * h * (k - 1) / (h - l * k)
-
-
-def heavier_mass_in_the_paper(l: N, M: N, k: N) -> N:
-    """Return the heavier mass (kg) on the verge, as (35) has it; `critical_heavier_mass`."""
-    return M * l * k / (M - 4 * l * (k - 1))
-
-
-THE_PAPERS = (ratio_in_the_paper, pulley_mass_in_the_paper, heavier_mass_in_the_paper)
-FUNCTIONS: Mapping[str, Callable[..., Any]] = {
-    **vars(physics),
-    **{law.__name__: law for law in THE_PAPERS},
-    **{"product": mul, "quotient": truediv},
-}
+FUNCTIONS: Mapping[str, Callable[..., Any]] = {**vars(physics), "product": mul, "quotient": truediv}
 """Functions that equations of `derivation.md` name."""
 
 
 def _fields(derivation: Derivation) -> dict[str, str]:
     """Return what stands between braces in `derivation.md`."""
-    decided = derivation.decided
-    return {
-        "l": derivation.light,
-        "h": derivation.heavy,
-        "a": derivation.symbol("magnitude"),
-        "difference": derivation.symbol("difference"),
-        "phi": derivation.symbol("phi"),
-        "kinetic": "kinetic " if decided.slides_by_mu_k else "",
-        "kin": "_kin" if decided.slides_by_mu_k else "",
-        "limiting_": "limiting_" if decided.slides_by_mu_k else "",
+    slides_by_mu_k = derivation.decided.slides_by_mu_k
+    return derivation.words | {
+        "kinetic": "kinetic " if slides_by_mu_k else "",
+        "limiting_": "limiting_" if slides_by_mu_k else "",
         "limiting_symbol": derivation.symbol("limiting_k_minus_1"),
         "verdict": verdict(derivation.answers),
     }
@@ -214,7 +186,6 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
     by = motion.fall if motion.finds and motion.a is None else ()
     at_rest = decided.heavier_side == 0 or decided.pulley_at_rest
     grips, moves = not decided.at_limit, answers["acceleration"] is not None
-    is_disk = scene.I is None and scene.inertia == Fraction(1, 2)
     critical_pulley, heavier, lighter = (
         answers[f"critical_{name}_mass"] is not None for name in ("pulley", "heavier", "lighter")
     )
@@ -226,8 +197,6 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
         "half a turn": scene.wrap.is_half_turn,
         **{f"a by {x} and {y}": by == (x, y) for x, y in combinations(FALL, 2)},
         "falls": bool(motion.fall),
-        "paper's pulley": is_disk
-        and not (decided.has_axle_friction or decided.pulley_at_rest or decided.is_driven),
         "ratio is known": decided.pulley_known and not decided.tensions_equal,
         "mu is positive": bool(scene.mu),
         "held by the axle": decided.axle_holds and not decided.locked,

@@ -54,27 +54,28 @@ MOTION = ("acceleration", "tension_1", "tension_2")
 """Quantities that a derivation gives first."""
 INTERMEDIATE = {
     "half_sine": ("sin(φ/2)", ""),
+    "phi": ("{phi}", "rad"),
     "ratio_minus_1": ("x", ""),
     "mu_verge_massless": ("μ_0", ""),
+    "limiting_arc": ("φ_lim", "rad"),
     "k_minus_1": ("k - 1", ""),
     "friction_mass": ("z", "kg"),
     "drive": ("d", "kg"),
-    "limiting_arc": ("φ_lim", "rad"),
+    "limiting_k_minus_1": ("k{kin} - 1", ""),
+    "limiting_friction_mass": ("z{kin}", "kg"),
+    "limiting_drive": ("d{kin}", "kg"),
+    "magnitude": ("{a}", "m/s²"),
+    "light_tension": ("T{l}", "N"),
+    "heavy_tension": ("T{h}", "N"),
+    "difference": ("T{h} - T{l}", "N"),
+    "tension_ratio": ("T{h}/T{l}", ""),
 }
-"""The symbols and units of intermediate values, by the machine's names."""
-UNIT_BY_NAME = {
-    **{name: unit for name, (_, unit) in INTERMEDIATE.items()},
-    **{
-        "limiting_friction_mass": "kg",
-        "limiting_drive": "kg",
-        "magnitude": "m/s²",
-        "phi": "rad",
-        "I": "kg m²",
-    },
-    **dict.fromkeys(("light_tension", "heavy_tension", "difference", "f_axle"), "N"),
-    **{"a": "m/s²", "|a|": "m/s²", "a_1": "m/s²", "v": "m/s", "g": "m/s²", "M": "kg", "c": "kg", "b": "kg"},
+"""The symbols and units of intermediate values, by the machine's names; braces hold `Derivation.words`."""
+UNIT_BY_SYMBOL = {
+    **{"M": "kg", "c": "kg", "b": "kg", "f_axle": "N", "I": "kg m²", "g": "m/s²", "v": "m/s"},
+    **dict.fromkeys(("a", "|a|", "a_1"), "m/s²"),
 }
-"""The units of intermediate values, by name, and of inputs, by symbol."""
+"""The units of inputs."""
 REFERRED_TO = ("capstan_ratio", "critical_pulley_mass", "mu_verge")
 """Quantities that equations of others refer to."""
 WITHOUT_AXLE_FRICTION = {"f_axle": 0, "b": 0, "D": 1}
@@ -84,23 +85,17 @@ WITHOUT_AXLE_FRICTION = {"f_axle": 0, "b": 0, "D": 1}
 class Derivation:
     """Write the equations of a scene, each once, with the solver's numbers.
 
-    ``inputs`` are the symbols with their values, ``measured_symbols`` those that follow from a motion.
-    ``light`` and ``heavy`` are the indices of the masses. ``shown`` are the names of equations written.
+    ``inputs`` are the symbols with their values. ``words`` are parts of symbols that depend on the scene, as
+    l and h, the indices of the masses. ``shown`` are the names of equations written.
     """
 
     def __init__(self, answers: Answers) -> None:
         self.answers, self.decided, self.scene = answers, answers.decided, answers.decided.scene
         self.digits = answers.digits or SHOWN_DIGITS
         self.shown: set[str] = set()
-        self.light, self.heavy = ("2", "1") if self.decided.heavier_side < 0 else ("1", "2")
+        self.words = self._words()
         self.symbols = self._symbols()
         self.inputs = {name: Symbol(name, x) for name, x in self._values().items() if x is not None}
-        motion = self.decided.motion
-        self.measured_symbols = {"c", "M"} if motion.finds == "M" else {motion.finds}
-        symbols = {"axle": "f_axle", "a": self.symbols["magnitude"], "speed": "v"}
-        self.measured_symbols |= {symbols.get(name, name) for name, _ in self.scene.terms}
-        if motion.finds and motion.a is None:
-            self.measured_symbols.add(self.symbols["magnitude"])
 
     def _values(self) -> dict[str, Fraction | None]:
         """Return what is given or found, by symbol."""
@@ -120,28 +115,28 @@ class Derivation:
             "μ_k": scene.mu_k,
             "f_axle": decided.axle_friction if decided.has_axle_friction else None,
             "b": decided.axle_mass if decided.has_axle_friction else None,
-            self.symbols["magnitude"]: decided.measured_acceleration if motion.finds else None,
+            self.words["a"]: decided.measured_acceleration if motion.finds else None,
             **dict(zip("stv", decided.fall, strict=True)),
             **terms,
         }
 
+    def _words(self) -> dict[str, str]:
+        decided = self.decided
+        m1_is_heavier, may_be_negative = decided.heavier_side < 0, decided.slows_down or decided.is_driven
+        return {
+            "l": "2" if m1_is_heavier else "1",
+            "h": "1" if m1_is_heavier else "2",
+            "a": ("a_1" if may_be_negative else "|a|") if m1_is_heavier else "a",
+            "phi": "π" if self.scene.wrap.is_half_turn else "φ",
+            "kin": "_kin" if decided.slides_by_mu_k else "",
+        }
+
     def _symbols(self) -> dict[str, str]:
         """Return the symbols that are not in the table of quantities, or differ from it in this scene."""
-        decided, scene = self.decided, self.scene
-        kin = "_kin" if decided.slides_by_mu_k else ""
-        may_be_negative = decided.slows_down or decided.is_driven
+        decided = self.decided
         fall = {"drop": decided.motion.drop, "final_speed": decided.motion.speed}
         referred_to = [*REFERRED_TO, *(name for name, given in fall.items() if given is None)]
-        symbols = {name: symbol for name, (symbol, _) in INTERMEDIATE.items()} | {
-            "limiting_k_minus_1": f"k{kin} - 1",
-            "limiting_friction_mass": f"z{kin}",
-            "limiting_drive": f"d{kin}",
-            "phi": "π" if scene.wrap.is_half_turn else "φ",
-            "magnitude": "a" if decided.heavier_side >= 0 else "a_1" if may_be_negative else "|a|",
-            "light_tension": f"T{self.light}",
-            "heavy_tension": f"T{self.heavy}",
-            "difference": f"T{self.heavy} - T{self.light}",
-            "tension_ratio": f"T{self.heavy}/T{self.light}",
+        symbols = {name: symbol.format(**self.words) for name, (symbol, _) in INTERMEDIATE.items()} | {
             "rim_acceleration": "a_rim" if decided.regime == "slip" else "a",
             **{name: QUANTITIES[name].letters for name in referred_to},
         }
@@ -200,10 +195,11 @@ class Derivation:
         An exact one of no more digits than wanted stays as it is, else it is correctly rounded to ``digits``.
         More than ``digits`` are wanted of an input, up to ``typed``.
         """
+        keep = digits
         if isinstance(symbol.of, Fraction):
-            exact, keep = symbol.of, digits if symbol.name in self.measured_symbols else max(digits, typed)
+            exact, keep = symbol.of, max(digits, typed)
         else:
-            quantity, keep = attrgetter(symbol.of), digits
+            quantity = attrgetter(symbol.of)
             try:
                 exact = self.answers.in_any_arithmetic(quantity)(EXACT)
             except Irrational:
@@ -238,4 +234,6 @@ class Derivation:
 
 def unit_of(name: str) -> str:
     """Return the unit of a quantity, an intermediate value or an input."""
-    return QUANTITIES[name].unit if name in QUANTITIES else UNIT_BY_NAME.get(name, "")
+    if name in QUANTITIES:
+        return QUANTITIES[name].unit
+    return INTERMEDIATE[name][1] if name in INTERMEDIATE else UNIT_BY_SYMBOL.get(name, "")
