@@ -211,7 +211,7 @@ class TableTally(Tally):
         if self.counts[LIKE] and not self.counts[UNLIKE]:
             most = f"all wraps are less than {LIKE_RADIANS[1]}°"
             lines.append(f"{most}; if they are in radians or turns, say so, as in wrap (rad).")
-        lines += [f"{PULL}."] if self.counts[PULL] else []
+        lines += [PULL] if self.counts[PULL] else []
         bare = (x for x in MASSES if self.counts[x])
         lines += [f"{x} is in kg; for a weight give its unit, as {x} (N)." for x in bare]
         lines += [f"first error, in {self.first_error}"] if errors else []

@@ -23,7 +23,6 @@ from ..numbers.digits import (
 )
 from ..reading.units import MAX_MAGNITUDE
 from ..solver.answers import ABOVE_DOUBLES, BELOW_DOUBLES, Answers
-from ..solver.physics import critical_heavier_mass
 from ..solver.quantities import FROM_MOTION, LIMITS_OF_ONE_MASS, NAMES, QUANTITIES
 from ..solver.scene import DRIVE, IN_SI, INPUTS, MASSES, Unit, with_unit
 from .given import as_given, inputs_in_words, label
@@ -286,7 +285,7 @@ def _slips(answers: Answers) -> str:
 
 
 LOW_GRAVITY, HIGH_GRAVITY = 9.7, 9.9
-"""Less or more than this (m/s²) is hardly gravity on Earth, where friction or a motor can do the same."""
+"""Less or more than this (m/s²) is hardly gravity on Earth."""
 LIKE_RADIANS = (0.3, 12.6)
 """The range of degrees that are probably radians, or turns: a short arc, but up to two turns in radians."""
 
@@ -317,16 +316,12 @@ def remarks(answers: Answers) -> list[str]:
         sentences.append("`mu_k` has no effect here, as the string does not slip.")
         if answers["mu_verge"] is not None and answers.settle(lambda m: m.mu_verge - m.ar.number(mu_k)) > 0:
             sentences.append("A string that already slides keeps sliding, as `mu_k` is below `mu_verge`.")
-    c, slips_above_a_mass = decided.rim_mass, decided.scene.mu is not None and decided.slips_once_it_moves
-    if slips_above_a_mass and c is not None and not (decided.is_driven or decided.slips_at("heaviest")):
-        beside = _beside(answers, decided.heavy)
-        least = answers.rounded("critical_heavier_mass", beside)
-        most = answers.settle(
-            lambda m: critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b, -1), beside
-        )
+    slips_above_a_mass = decided.scene.mu is not None and decided.slips_once_it_moves
+    may_turn = decided.rim_mass is not None and not decided.is_driven
+    if slips_above_a_mass and may_turn and not decided.slips_at("heaviest"):
         sentences.append(
-            f"The string slips if the heavier mass is between {format_number(least)} and"
-            f" {format_number(most)} kg. Above that it holds again, as the pulley turns with it."
+            "If the heavier mass is far above `critical_heavier_mass`, the string holds again, as the pulley"
+            " turns with it."
         )
     if decided.locked and decided.has_axle_friction and not decided.axle_holds:
         sentences.append("A locked pulley does not turn, so `axle` has no effect.")
@@ -356,19 +351,18 @@ def _without_effect(answers: Answers) -> Iterator[str]:
 
 
 def _on_what_is_found(answers: Answers) -> Iterator[str]:
-    """Say for which pulley a mass is found, what else explains an unusual gravity, and what the axle does."""
+    """Say for which pulley a mass is found, what else explains an unusual gravity, and what a sign means."""
     decided, scene = answers.decided, answers.decided.scene
-    finds, g = decided.motion.finds, scene.g
+    finds = decided.motion.finds
     if finds in MASSES and scene.M is scene.I is None:
         yield f"`{finds}` is for a massless pulley, as `M` is not given."
     if finds == "axle" and decided.motion.a == 0:
         yield "As the masses rest, `axle` is the least friction that holds them; it may be more."
-    if finds == "g" and g < LOW_GRAVITY and not decided.has_axle_friction:
-        causes = "more inertia, or friction of the axle (`--find axle`)"
-        yield f"`g` is low for the Earth; {causes}, would slow the masses, too."
-    if finds == "g" and g > HIGH_GRAVITY:
-        causes = "less inertia, or a motor (`--find drive`)"
-        yield f"`g` is high for the Earth; {causes}, would speed the masses up, too."
+    if finds == "g" and not LOW_GRAVITY < scene.g < HIGH_GRAVITY:
+        causes = "inertia, axle friction (`--find axle`) or a motor (`--find drive`)"
+        yield f"`g` is not the Earth's; {causes} may explain the motion, too."
+    if decided.is_driven and (answers["drive_force"] or 0) < 0:
+        yield "A `drive_force` below 0 pulls `m2` up."
     grips = decided.is_driven and decided.regime == "no-slip" and decided.rim_mass is not None
     if grips and decided.has_axle_friction:
         forces = (answers.settle(methodcaller("drive_force_against", way)) for way in (1, -1))
@@ -378,50 +372,40 @@ def _on_what_is_found(answers: Answers) -> Iterator[str]:
 
 
 PULL = (
-    "a pull by hand is not a hanging weight: the tension there is the pull itself, and the acceleration and"
-    " the other tension differ"
+    "A pull by hand is not a hanging weight: the tension there is the pull itself, and the acceleration and"
+    " the other tension differ."
 )
 
 
-def on_units(answers: Answers) -> list[str]:
+def on_units(answers: Answers) -> Iterator[str]:
     """Say of numbers without a unit what they may have been meant to be: radians, turns, or a weight."""
-    scene, wrap, sentences = answers.decided.scene, answers.decided.scene.wrap, []
+    scene, wrap, axle = answers.decided.scene, answers.decided.scene.wrap, answers.typed("axle")
     if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
         typed = as_typed(wrap.number)
-        sentences.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
-    axle = answers.typed("axle")
+        yield f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn."
     if scene.R is not None and axle.number and not axle.unit.symbol:
         typed = as_typed(axle.number)
-        sentences.append(f"`axle` is read as a force, {typed} N; a torque is {typed}Nm.")
+        yield f"`axle` is read as a force, {typed} N; a torque is {typed}Nm."
     weights = [x for x, _ in scene.terms if x in MASSES]
-    bare = [x for x in MASSES if x not in (*weights, scene.motion.finds) and not answers.typed(x).unit.symbol]
-    for x in bare if weights else ():
-        if scene.own(x):
-            sentences.append(f"`{x}` is a mass of {as_given(answers, x)}; for a weight give its unit.")
+    for x in MASSES if weights else ():
+        if x not in (*weights, scene.motion.finds) and scene.own(x) and not answers.typed(x).unit.symbol:
+            yield f"`{x}` is a mass of {as_given(answers, x)}; for a weight give its unit."
     if any(map(scene.own, weights)) and not scene.lacking and answers["acceleration"] != 0:
-        sentences.append(f"{PULL[0].upper()}{PULL[1:]}.")
-    return sentences
+        yield PULL
 
 
-def _on_weights(answers: Answers) -> list[str]:
+def _on_weights(answers: Answers) -> Iterator[str]:
     """Say the masses of weights, and which way a mass is taken to move."""
     scene, motion = answers.decided.scene, answers.decided.motion
-    masses = {x: strip_zeros(_beside(answers, None)(mass)) for x in MASSES if (mass := getattr(scene, x))}
-    each = [
-        f"`{x}` is a weight of {as_given(answers, x)}, the mass {format_number(masses[x])} kg"
-        for x, _ in scene.terms
-        if x in masses
-    ]
-    sentences = [f"{', and '.join(each)}."] if each else []
+    for x, _ in scene.terms:
+        if x in MASSES and (mass := scene.own(x)):
+            in_kg = format_number(strip_zeros(_beside(answers, None)(mass)))
+            yield f"`{x}` is a weight of {as_given(answers, x)}, the mass {in_kg} kg."
     either_way = motion.finds == DRIVE or (motion.finds in MASSES and 0 not in (scene.m1, scene.m2))
     if either_way and motion.a is None:
         name = "speed" if motion.drop is None else "drop"
-        falls, rises = "fall; if it rises", "rises"
-        if motion.finds == DRIVE:
-            falls, rises = "accelerate downwards; if upwards", "accelerates upwards"
-        does = f"is taken to {falls}, give a `{name}` below 0"
-        sentences.append(f"`m2` {does if getattr(motion, name) > 0 else f'{rises}, as `{name}` is below 0'}.")
-    return sentences
+        way = "upwards, as" if getattr(motion, name) < 0 else "downwards, unless"
+        yield f"`m2` is taken to accelerate {way} `{name}` is below 0."
 
 
 def _on_pulley(answers: Answers, mass: Fraction | float) -> Answers:
