@@ -312,16 +312,13 @@ def critical_pulley_mass(l: N, h: N, friction_mass: N, d: N, beta: N, b: N) -> N
     return (2 * friction_mass * h - b * (h + l + friction_mass)) / (d * beta)
 
 
-def critical_heavier_mass(l: N, c: N, friction_mass: N, b: N, sign: int = 1) -> N:
-    """Return the heavier mass (kg) above which the string slips (35), or with ``sign`` -1 holds again.
+def critical_heavier_mass(l: N, c: N, friction_mass: N, b: N) -> N:
+    """Return the heavier mass (kg) above which the string slips (35), for c > b and c + b > 2 l (k - 1).
 
-    c - b and c + b - 2 l (k - 1) must have that sign.
-
-    >>> critical_heavier_mass(1, 6, 2, 1), critical_heavier_mass(1, 1, 2, 2, -1)
-    (5.0, 3.0)
+    >>> critical_heavier_mass(1, 6, 2, 1)
+    5.0
     """
-    difference, rest = sign * (c - b), sign * (c + b - 2 * friction_mass)
-    return difference / rest * least_heavier_mass(l, friction_mass)
+    return (c - b) / (c + b - 2 * friction_mass) * least_heavier_mass(l, friction_mass)
 
 
 def critical_lighter_mass(h: N, c: N, k_minus_1: N, b: N) -> N:
