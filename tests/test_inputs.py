@@ -35,7 +35,7 @@ the brackets, and a unit after that"""
 TOO_LONG = "is too long; numerator and denominator may have 1500 digits"
 RULES: list[tuple[str, list[Any], str]] = [
     ("m1", [-1.5, nan, inf, Decimal("sNaN")], FINITE),
-    ("m1", [np.str_("1,5")], "is not a number; write 1.5, without a comma"),
+    ("m1", [np.str_("1,5")], "has a comma; write a decimal point, and nothing between thousands"),
     ("m1", ["1" * 1001], "has 1001 digits; at most 1000 are taken"),
     ("m1", [Decimal("1e9999999"), f"1.{'1' * 999}/{'7' * 999}e500"], TOO_LONG),
     ("m1", ["4" * 1000 + "lb"], "has 1008 digits, its unit included; at most 1000 are taken"),
