@@ -2,21 +2,23 @@
 
 from collections.abc import Sequence
 from decimal import Decimal
-from itertools import chain, groupby
+from itertools import groupby
 from math import isinf
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 
 from ..explain.given import VERSION
 from ..numbers.digits import format_number
 from ..output.figure import BLUE, GREEN, PURPLE, RED, saved
 from ..output.forms import Picture
 from ..output.page import Page
-from .measure import EXACT_DIGITS, MOST_ROWS, SEED, SETTINGS, Measured
+from ..output.text import aligned
+from .measure import EXACT_DIGITS, MOST_ROWS, SEED, Measured
 
+COLUMNS = ("Family", "Setting", "Time (µs)", "Median", "Worst", "Wrong")
 LEGEND = (
-    f"Each family has the time per scene in µs, in a table of up to {MOST_ROWS} rows; the median and the"
-    f" worst error, against {EXACT_DIGITS} digits, in units in the last place of a double (ulp, about 1e-16"
-    " of it); and the share of scenes with a wrong regime.",
+    f"The time of a scene, in a table of up to {MOST_ROWS} rows; the median and the worst error, against"
+    f" {EXACT_DIGITS} digits, in units in the last place of a double (ulp, about 1e-16 of it); and the share"
+    " of scenes with a wrong regime.",
     "Settings: the same model in plain NumPy, accuracies of solve_arrays, and solve to 50 digits.",
 )
 LEAST, GREATEST = 1e-3, 1e16
@@ -31,25 +33,16 @@ def record(measured: Sequence[Measured], scenes: int) -> dict[str, object]:
 
 
 def print_table(page: Page, measured: Sequence[Measured], scenes: int) -> None:
-    """Print a column for each setting, with its time, error and share of wrong regimes on each family."""
-    groups = []
-    for family, group in groupby(measured, attrgetter("family")):
-        heads = [family, "  median (ulp)", "  worst (ulp)", "  wrong"]
-        cells = (
-            [
-                short(1e6 * setting.seconds, 3),
-                short(setting.median_ulp),
-                short(setting.worst_ulp),
-                f"{short(100 * setting.share_wrong_regime, 3)} %",
-            ]
-            for setting in group
-        )
-        groups.append([list(row) for row in zip(heads, *cells, strict=True)])
-    widths = [max(map(len, column)) for column in zip(*chain(*groups), strict=True)]
-    for row in chain(*groups):
-        row[1:] = map(str.rjust, row[1:], widths[1:])
+    """Print a row for each setting on each family."""
+    numbers = (
+        (short(1e6 * x.seconds, 3) for x in measured),
+        (short(x.median_ulp) for x in measured),
+        (short(x.worst_ulp) for x in measured),
+        (f"{short(100 * x.share_wrong_regime, 3)} %" for x in measured),
+    )
+    rows = zip(*zip(*(x[:2] for x in measured), strict=True), *map(aligned, numbers), strict=True)
     page.say(f"{scenes} scenes of each family, seed {SEED}")
-    page.table(["Family", *SETTINGS], groups)
+    page.table(COLUMNS, [[*group] for _, group in groupby(rows, itemgetter(0))])
     page.say(*LEGEND)
 
 
