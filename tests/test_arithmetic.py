@@ -98,6 +98,16 @@ def test_functions_and_constants_are_within_the_bounds_of_their_proofs(digits: i
             assert abs(value - function * mpmath.mpf(2) ** bits) <= error
 
 
+@given(precisions, st.integers(), st.integers(0), st.integers(0, 40))
+def test_a_fixed_point_number_is_enclosed_with_its_error(
+    digits: int, value: int, error: int, bits: int
+) -> None:
+    """Rounding to digits hides an end that lacks the error, unless the number is short."""
+    found = enclosures(digits)._fixed(value, error, bits)
+    assert Fraction(found.lo) <= Fraction(value - error, 2**bits)
+    assert Fraction(found.hi) >= Fraction(value + error, 2**bits)
+
+
 @pytest.mark.parametrize("wrong", ["-0.3", "-1e-9", "1e-9", "0.3"])
 @given(precisions, positive(-3, 4))
 def test_a_logarithm_is_enclosed_whatever_is_guessed(wrong: str, digits: int, q: Fraction) -> None:

@@ -2,6 +2,7 @@
 
 import json
 from fractions import Fraction
+from hashlib import sha256
 from math import inf, isfinite, ulp
 from statistics import median
 from types import SimpleNamespace
@@ -10,7 +11,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from atwood_cli import solve_arrays
 from atwood_cli.solver.quantities import REGIMES, STANDARD
 from atwood_cli.tradeoff import measure as tradeoff
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, draw_scenes, measure
@@ -33,36 +33,23 @@ def briefly(monkeypatch: pytest.MonkeyPatch) -> None:
 # Scenes
 
 
-def test_scenes_come_from_the_seed_the_same_on_every_platform() -> None:
+DRAWN = {
+    "ordinary": "b15316416f4a6df0",
+    "nearly-equal": "0422e1f9e933e982",
+    "light-pulley": "7fa0d5951d16ba92",
+    "near-critical": "d1f66368602dcd5d",
+    "whole-range": "92bfbf5e55692c31",
+}
+"""How the SHA-256 of 300 scenes begins."""
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_scenes_come_from_the_seed_the_same_on_every_platform(family: str) -> None:
     """Exponents and mantissas are drawn apart, so that no library's power or logarithm has a say."""
-    ordinary = [0.16445123133464037, 0.20210789773600948, 0.8335547957401686, 0.014586684315688787]
-    near = [8.82546756886875, 1214.438866204906, 513.4088800424233, 0.8413462820148073]
-    for family, wanted in {"ordinary": ordinary, "near-critical": near}.items():
-        (first, *_) = rows = draw_scenes(family, 30, 1)
-        assert [*first.values()] == wanted
-        assert draw_scenes(family, 7, 1) == rows[:7]
-        assert not any(row in rows for row in draw_scenes(family, 30, 2))
-
-
-def test_families_are_what_they_say() -> None:
-    scenes = {family: draw_scenes(family, 300, 1) for family in FAMILIES}
-    drawn = {family: np.array([[*row.values()] for row in rows]).T for family, rows in scenes.items()}
-    assert all(np.all(columns[0] <= columns[1]) for columns in drawn.values())
-    m1, m2, M, _ = drawn["ordinary"]
-    for column, low, high in ((m1, 0.007, 128), (m2 / m1, 1.007, 129), (M, 0.007, 1024)):
-        assert low < min(column) < max(column) < high
-    m1, m2, *_ = drawn["nearly-equal"]
-    apart = (m2 - m1) / m1
-    M = drawn["light-pulley"][2]
-    assert 0 < min(apart) < 1e-14 < 1e-3 < max(apart) < 0.01
-    assert 7e-31 < min(M) < 1e-28 < 1e-4 < max(M) < 1e-3
-    m1 = drawn["whole-range"][0]
-    assert min(m1) < 1e-320 < 1e250 < max(m1)
-    m1, m2, M, mu = drawn["near-critical"]
-    critical = solve_arrays(m1, m2, mu=mu)["critical_pulley_mass"]
-    least = solve_arrays(m1, 2 * m1, mu=mu, quantities=["least_heavier_mass"])["least_heavier_mass"]
-    off = np.fmin(abs(M / critical - 1), abs(m2 / least - 1))
-    assert 0 < off.min() < 1e-13 < off.max() < 1.1e-3
+    rows = draw_scenes(family, 300, 1)
+    assert sha256(repr(rows).encode()).hexdigest().startswith(DRAWN[family])
+    assert draw_scenes(family, 7, 1) == rows[:7]
+    assert not any(row in rows for row in draw_scenes(family, 30, 2))
 
 
 # Errors
