@@ -231,9 +231,10 @@ def check_lesson(answers: Answers, full: Explanation, names: tuple[str, ...]) ->
     known = {*Derivation(answers).inputs} - derived(full)
     known |= {"π", "φ"} | {side for one in all_equations(full) for side in [symbol_of(one)] if not one.needs}
     known |= {"c"} if answers.decided.locked else set()  # (33) is solved for it
+    known |= {"a"} if answers.decided.motion.a is not None else set()  # of `m1`, it is -a
     for equation in all_equations(lesson):
         assert equation.needs - derived(lesson) <= known, (answers.decided.scene, names, equation)
-    introduced = {*"m1 m2 T1 T2 a α I M c f_axle".split()}  # before (1) to (3)
+    introduced = {*"m1 m2 T1 T2 a a_1 α I M c f_axle F_drive".split()}  # before (1) to (3)
     left_out = derived(full) - derived(lesson) - known - introduced
     for _, words, formulas in lesson.paragraphs:
         marked = [*" ".join(words).split("`")[1::2], *(chain(one)[0] for one in formulas)]

@@ -216,10 +216,9 @@ def verdict(answers: Answers) -> str:
     least = answers.rounded("least_heavier_mass", _beside(answers, decided.heavy))
     if least.is_infinite() or least.adjusted() > MAX_MAGNITUDE:
         return "No slip on any pulley, for any heavier mass that can be typed."
-    heavy, above = as_typed(decided.heavy), format_number(least)
     return (
-        f"No slip on any pulley: the heavier mass is {heavy} kg, and only above {above} kg does a heavy"
-        " enough pulley make the string slip."
+        "No slip on any pulley: a heavy enough one makes the string slip only if the heavier mass is above"
+        f" {format_number(least)} kg."
     )
 
 

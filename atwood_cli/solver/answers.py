@@ -15,7 +15,7 @@ from ..numbers.interval import LARGEST_EXPONENT
 from ..numbers.settling import settle
 from .decisions import Decisions
 from .machine import Machine
-from .quantities import FROM_MOTION, NAMES, NEEDS_MASSES, QUANTITIES, Undetermined
+from .quantities import FROM_MOTION, NAMES, NEED_BOTH_MASSES, NEEDS_MASSES, QUANTITIES, Undetermined
 from .scene import IN_SI, NOT_GIVEN, Input, Scene, Unit, Units
 
 if TYPE_CHECKING:
@@ -110,8 +110,10 @@ class Answers:
 
     def answer(self, name: str) -> Answer:
         """Return the value of a quantity, and why it is missing."""
+        if self.decided.lacking and name in NEED_BOTH_MASSES:
+            return Answer(None, NEEDS_MASSES)
         if name == "regime":
-            return Answer(None, NEEDS_MASSES) if self.decided.lacking else Answer(self.decided.regime)
+            return Answer(self.decided.regime)
         if name not in self._answers:
             self._answers[name] = Answer(*self._settled(self.quantity(name)))
         return self._answers[name]

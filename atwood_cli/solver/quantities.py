@@ -122,6 +122,14 @@ NAMES = ("regime", *(name for name in QUANTITIES if name not in MEASURED_NAMES))
 """The quantities that every scene has."""
 LIMITS_OF_ONE_MASS = ("critical_lighter_mass", "critical_heavier_mass")
 """The least and the greatest mass that the string holds beside a given one."""
+NEED_BOTH_MASSES = {*NAMES} - {
+    *LIMITS_OF_ONE_MASS,
+    "capstan_ratio",
+    "least_heavier_mass",
+    "least_pulley_mass",
+    "moment_of_inertia",
+}
+"""What no scene has that lacks a mass."""
 TABLE_NAMES = (*NAMES, *FROM_MOTION["fall"])
 """The quantities of many scenes: those of every scene, and of a fall."""
 STANDARD = (
