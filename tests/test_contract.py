@@ -72,7 +72,7 @@ PYTHON: dict[str, tuple[Iterable[str], str]] = {
     ),
     "commands": (COMMANDS, "solve sweep contact fit batch quantities tradeoff"),
     "quantities": (QUANTITIES, VALUES),
-    "quantities of every scene": (oracle.NAMES, " ".join(NAMES)),
+    "quantities of every scene": (sorted(oracle.NAMES), " ".join(sorted(NAMES))),
 }
 
 

@@ -262,7 +262,7 @@ def _on_the_verge(answers: Answers) -> str:
         "On the verge of slipping: as `M` is not given, this is for the critical pulley mass,"
         f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on a"
         f" massless one the acceleration is {_say(massless, 'acceleration')} m/s². On a locked pulley"
-        f" (`--M inf`) it slips: {format_number(enough)} is needed."
+        f" (`--M inf`) it slips: that needs `mu` of at least {format_number(enough)}."
     )
 
 
@@ -354,7 +354,11 @@ def _on_what_is_found(answers: Answers) -> Iterator[str]:
     decided, scene = answers.decided, answers.decided.scene
     finds = decided.motion.finds
     if finds in MASSES and scene.M is scene.I is None:
-        yield f"`{finds}` is for a massless pulley, as `M` is not given."
+        yield f"`{finds}` is for a massless pulley, as `M` is not given; 0 is an end fixed to the pulley."
+    if finds == "axle" and decided.motion.a is None:
+        yield "The masses are taken to speed up from rest; if they come to rest, give an `a` below 0."
+    if decided.motion.fall and not finds and decided.has_axle_friction and not decided.axle_holds:
+        yield "The fall is from rest; while the mass still rises, axle friction adds to its weight."
     if finds == "axle" and decided.motion.a == 0:
         yield "As the masses rest, `axle` is the least friction that holds them; it may be more."
     if finds == "g" and not LOW_GRAVITY < scene.g < HIGH_GRAVITY:

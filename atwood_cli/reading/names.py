@@ -109,7 +109,7 @@ def read_name(
     if (name := symbols.get(_plain(word), "")) in known:
         return name
     small = _plain(word).lower()
-    alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
+    alike = [x for symbol, x in symbols.items() if len(small) > 1 and symbol.lower() == small and x in known]
     meant = MEANT.get(small, alike[0] if len(alike) == 1 else "")
     hint = f"; did you mean {meant}?" if meant in known else ""
     known_names = "; see atwood quantities" if kind == "quantity" else f"; there are {', '.join(known)}"

@@ -1,4 +1,4 @@
-"""Read numbers as people type them, exactly: 1.5e-3, 1½, 12cm/2, 9.81 m/s2, 3pi/2, 1.000(2), (250±1)g."""
+"""Read numbers as people type them, exactly: 1.5e-3, 1½, 12cm/2, 80g+5g, 9.81 m/s2, 3pi/2, 1.000(2)."""
 
 from __future__ import annotations
 
@@ -32,6 +32,7 @@ UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
     "force": {
         "N": "1", "mN": "1e-3", "daN": "10", "kN": "1e3",
         "lbf": POUND_FORCE, "kip": POUND_FORCE * 1000, "kgf": STANDARD_GRAVITY,
+        "gf": Fraction(STANDARD_GRAVITY) / 1000,
     },
     "energy": {"J": "1", "mJ": "1e-3", "kJ": "1e3", "ft lbf": FOOT * POUND_FORCE},
     "torque": {
@@ -201,11 +202,15 @@ def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> 
     if dimension == "time" and (clock := STOPWATCH.fullmatch(text)):
         hours, minutes, seconds = map(_decimal, clock.groups(default="0"))
         return Input(limited((hours * 60 + minutes) * 60 + seconds), unit=Unit("s"))
-    if dimension == "angle" and len(angles := re.split(r"(?<=[^eE ]) ?\+ ?", text)) > 1:
-        read_angles = [_read_exactly(angle, dimension, others) for angle in angles]
-        if len({angle.unit.symbol == "rad" for angle in read_angles}) > 1:
-            raise Malformed("adds radians to another unit; write the same unit at each angle")
-        return read_angles[0]._replace(number=limited(sum((x.number for x in read_angles), Fraction(0))))
+    if len(summands := re.split(r"(?<=[^eE ]) ?\+ ?", text)) > 1:
+        terms = [_read_exactly(one, dimension, others) for one in summands]
+        own = [
+            (x.unit.symbol == "rad", bool(x.unit.symbol or dimension == "angle"), x.unit.terms) for x in terms
+        ]
+        if len({*own}) > 1:
+            raise Malformed("adds numbers of different units; write the same unit at each")
+        total = limited(sum((x.number for x in terms), Fraction(0)))
+        return terms[0]._replace(number=total, quotient="")
     if share := SHARE.fullmatch(text):
         read = _read_exactly(share[1], dimension, others)
         return read._replace(number=limited(read.number * _quotient(f"1/{share[2]}")))

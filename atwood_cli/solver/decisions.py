@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 ZERO, ONE = Fraction(0), Fraction(1)
 REGIME_ASSUMED = "assumed, as mu is not given"
+CRITICAL_ASSUMED = "on the critical pulley, as M is not given; M = inf is a locked pulley"
 MASSLESS_ASSUMED = "0, as M is not given and a massless pulley needs no friction; M = inf is a locked pulley"
 LimitingCase = Literal["as_given", "locked", "massless", "heaviest", "heaviest_at_rest", "lightest_at_rest"]
 
@@ -218,7 +219,12 @@ class Decisions:
     def assumptions(self) -> dict[str, str]:
         """The quantities that depend on what is only assumed, and the assumption."""
         if self.scene.mu is not None:
-            return {}
+            on_verge = not self.lacking and self.regime == "verge" and self.scene.mu
+            return (
+                dict.fromkeys(("mu_verge", "safety_factor", "least_wrap"), CRITICAL_ASSUMED)
+                if on_verge
+                else {}
+            )
         is_massless = self.scene.M is None and self.pulley_mass == 0
         moves = self.heavier_side != 0 and self.tensions_equal and not self.one_mass_is_0
         regime = {"regime": REGIME_ASSUMED} if self.mu_assumed else {}

@@ -23,10 +23,10 @@ from .quantities import Undetermined
 from .scene import DRIVE, FALL, INPUTS, MASSES, MEASURED, Input, Scene, SceneError, parameter_of
 
 MOTOR = "for a motor or a brake find the drive"
-IF_IT_SLOWS_DOWN = "for masses that slow down give a and find axle"
+IF_IT_SLOWS_DOWN = f"for masses that axle friction slows down give a and find axle, {MOTOR}"
 IF_IT_RESTS = "for masses that rest give a and find axle"
 LOADS_HELD = "without a motion and find, mu tells between which values of {} the string holds"
-NOT_BELOW_0 = "must be above 0, unless a mass is found from it: then it is below 0 if m2 rises"
+NOT_BELOW_0 = "must be above 0; below 0, where m2 accelerates upwards, it finds a mass or the drive"
 
 
 def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:

@@ -185,5 +185,5 @@ EITHER_WAY = "not unique, as axle friction opposes the motion, which `a` = 0 doe
 NEEDS_FALL = (
     "`give` `drop`, the height that the heavier mass falls from rest, or `time` or `speed` of that fall"
 )
-AT_REST = "no value, as nothing moves"
+AT_REST = "no value, as the acceleration is 0"
 SLOWS_DOWN = "no value, as the masses slow down and do not start from rest"
