@@ -103,8 +103,13 @@ def test_the_grammar_of_numbers(text: str) -> None:
             value = read_scene({"m1": text, "m2": 1}).m1
         except SceneError:
             return
-        # Only a unit, a blank of another script, or minus nothing, makes a mass of what is no plain number.
-        assert value == 0 or not text.isascii() or text.strip().lower().endswith(tuple(UNITS["mass"]))
+        # Only a unit, a sum, a blank of another script, or minus nothing, makes a mass of what is no plain number.
+        assert (
+            value == 0
+            or "+" in text[1:]
+            or not text.isascii()
+            or text.strip().lower().endswith(tuple(UNITS["mass"]))
+        )
 
 
 # fmt: off
@@ -113,7 +118,7 @@ BY_DEFINITION = {
     "length": "m 1 km 1000 dm 0.1 cm 0.01 mm 0.001 um 0.000001 in 0.0254 ft 0.3048 yd 0.9144",
     "angle": "deg 1 ° 1 turn 360 turns 360 rad 1",
     "time": "s 1 ms 0.001 us 0.000001 min 60 h 3600",
-    "force": "N 1 mN 0.001 daN 10 kN 1000 lbf 4.4482216152605 kip 4448.2216152605 kgf 9.80665",
+    "force": "N 1 mN 0.001 daN 10 kN 1000 lbf 4.4482216152605 kip 4448.2216152605 kgf 9.80665 gf 0.00980665",
     "energy": "J 1 mJ 0.001 kJ 1000 ft_lbf 1.3558179483314004",
     "torque": "N_m 1 mN_m 0.001 N_cm 0.01 daN_m 10 kN_m 1000 kgf_m 9.80665 lbf_ft 1.3558179483314004 ft_lbf 1.3558179483314004 lbf_in 0.1129848290276167",
     "acceleration": "m/s2 1 m_s-2 1 cm/s2 0.01 ft/s2 0.3048 N/kg 1",
@@ -132,6 +137,7 @@ TEXTS: dict[str, dict[str, Any]] = {
         "3lbs": "1.36077711", "1 slug": Fraction("4.4482216152605") / Fraction("0.3048"), "2 t": 2000, "3 μg": "3e-9",
         "½": "1/2", "1½": "3/2", "1 ½ g": "3/2000", "+⅞": "7/8", "１２．５": "12.5", "1e−2": "0.01", "3⁄4": "3/4",
         "1/3": "1/3", "1kg/3": "1/3", "1 / 3 kg": "1/3", "-1/-1.5e1": "1/15", "1/3g": "1/3000",
+        "80g+5g": "0.085", "80 g + .005 kg": "0.085", "1/3+1e+1": "31/3", "1/3g+1/6g": "1/2000",
     },
     "g": {
         **dict.fromkeys(["9.81m/s2", "9.81 m/s²", "9.81 m/s^2", "981cm/s2", "9.81 m s-2"], "9.81"),

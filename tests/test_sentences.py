@@ -204,7 +204,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
     ),
     rf"On the verge of slipping: as M is not given, this is for the critical pulley mass, {NUMBER} kg\. On a"
     rf" heavier pulley the string slips; on a massless one the acceleration is {NUMBER} m/s²\. On a locked"
-    rf" pulley \(--M inf\) it slips: {NUMBER} is needed\.": on_the_verge,
+    rf" pulley \(--M inf\) it slips: that needs mu of at least {NUMBER}\.": on_the_verge,
     rf"Slips on any pulley, because of axle friction: mu = {NUMBER} is below the {NUMBER} needed even on a"
     rf" massless one{KINETIC}\.": slips_on_any,
     rf"Slips( over a pulley held by axle friction)?: mu = {NUMBER} is below the {NUMBER} needed to hold"

@@ -47,7 +47,6 @@ def test_notes_show_floats_as_they_are_written() -> None:
     slips, holds = (solve(m1=1.0, m2=3.3, M=9.5, mu=mu, mu_k=mu_k) for mu, mu_k in ((0.2, None), (0.31, 0.1)))
     assert slips.notes[0] == "Slips: mu = 0.2 is below the 0.214620 needed to hold the string."
     assert holds.notes[0] == "No slip: mu = 0.31, and at least 0.214620 is needed."
-    assert "heavier mass is 3.3 kg," in solve(m1=1.0, m2=3.3, mu=0.5).notes[0]
 
 
 def test_an_inertia_factor_of_thousands_of_digits_is_written_shortly() -> None:

@@ -30,13 +30,13 @@ DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
 REMARKS = {
-    "m1": ", 250g, 2lb, 20N",
+    "m1": ", 80g+5g, 20N",
     "M": "; inf locks it",
     "mu_k": "; mu if not given",
     "g": ", or a planet, moon or pluto; 9.80665 if not given",
     "inertia": ", or disk, cylinder, hoop, ring, sphere, shell; 0.5 if not given",
     "I": ", instead of inertia, or the radius of gyration, 18cm; needs R",
-    "wrap": ": degrees, 3rad, pi/2, 2.5turn, 90+90; 180 if none",
+    "wrap": ": degrees, 3rad, pi/2, 2.5turn; 180 if none",
     "axle": ", 15mN, or a torque, 0.4mNm (needs R)",
     "a": ", 0.3g, 5rad/s2: finds M, or a mass, g, mu_k",
     "drop": ": two of drop, time, speed stand for a, one gives the others",
