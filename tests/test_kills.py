@@ -1,26 +1,17 @@
-"""What ends a run early: files are whole or as they were, and what a signal ends shows no traceback.
-
-python -m tests.test_kills 3000 has so many runs that write a file get a signal at a random instant, some of them
-two. The file is then as it was, or whole, and but for SIGKILL nothing is left beside it.
-"""
+"""What ends a run early: files are whole or as they were, and what a signal ends shows no traceback."""
 
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
-from contextlib import chdir
-from functools import cache, partial
+from functools import partial
 from itertools import count
 from pathlib import Path
-from random import Random
-from tempfile import TemporaryDirectory
 
-import polars as pl
 import pytest
 
-from .tools.running import HANGS, TOP, around, hearing
+from .tools.running import HANGS, hearing
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
 
@@ -29,11 +20,10 @@ SCENE = "--m1 1 --m2 3"
 
 
 def blown(
-    child: "subprocess.Popen[bytes]", blow: str, delays: Sequence[float] = (0,), stdin: bytes | None = None
+    child: "subprocess.Popen[bytes]", blow: str, times: int = 1, stdin: bytes | None = None
 ) -> tuple[int, bytes, bytes]:
-    """How a run ends that gets a signal after each delay: status, stdout, stderr."""
-    for delay in delays:
-        time.sleep(delay)
+    """How a run ends that gets a signal: status, stdout, stderr."""
+    for _ in range(times):
         child.send_signal(signal.Signals[blow])
     out, err = child.communicate(stdin, HANGS)
     return child.returncode, out, err
@@ -126,7 +116,7 @@ def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blow: str, times: int,
     while not any(path.stat().st_size > 50_000 for path in tmp_path.glob(".atwood-*")):
         assert child.poll() is None
         time.sleep(0.01)
-    status, _, err = blown(child, blow, [0] * times)
+    status, _, err = blown(child, blow, times)
     assert (status, out.exists()) == (STATUS[blow], bool(before))
     assert err == (b"" if blow == "SIGKILL" else b"atwood: stopped after 1000 rows\n")
     assert blow == "SIGKILL" or [path.read_text() for path in tmp_path.iterdir()] == [before] * bool(before)
@@ -141,58 +131,3 @@ def test_what_is_to_outlive_its_terminal_does(tmp_path: Path) -> None:
         time.sleep(0.01)
     ended = blown(child, "SIGHUP", stdin=b"m1,m2\n1,3\n")
     assert (ended[0], ended[2].splitlines()[-1]) == (0, b"atwood: 1 row: 1 no-slip; no errors.")
-
-
-SWEEP = f"sweep {SCENE} --M 1:100:20"
-RUNS = [
-    *(f"batch in.{kind} -o out.{kind}" for kind in ("csv", "ndjson", "parquet")),
-    *(f"{SWEEP}00 -o out.csv", f"{SWEEP} -o out.json", f"{SWEEP} --figure out.svg"),
-    f"contact {SCENE} --mu 0.3 --figure out.svg",
-]
-
-
-def cut(
-    line: str, before: bytes | None = None, blow: str = "", delays: Sequence[float] = ()
-) -> tuple[int, bytes, bytes | None, set[str]]:
-    """How a run ends that is to write a file, what it says, the file, and what else it leaves."""
-    with TemporaryDirectory() as folder, chdir(folder):
-        out = Path(next(word for word in line.split() if word.startswith("out.")))
-        if "batch" in line:
-            scenes = pl.DataFrame({"m1": [1.0] * 20_000, "m2": [3.0] * 20_000, "n": range(20_000)})
-            getattr(scenes, f"write_{out.suffix[1:]}")(f"in{out.suffix}")
-        given = {*Path().iterdir(), out}
-        if before is not None:
-            out.write_bytes(before)
-        child = hearing(*line.split(), "--force", env=around({"PYTHONPATH": str(TOP)}))
-        status, _, said = blown(child, blow, delays)
-        left = {path.name for path in {*Path().iterdir()} - given}
-        return status, said, out.read_bytes() if out.exists() else None, left
-
-
-@cache
-def whole(line: str) -> tuple[bytes | None, float]:
-    """What a run writes that is left alone, and how long it takes."""
-    begun = time.perf_counter()
-    return cut(line)[2], time.perf_counter() - begun
-
-
-@pytest.mark.parametrize("run", [73])  # Parquet, interrupted
-def test_what_is_killed_at_any_instant_leaves_its_file_whole_or_as_it_was(run: int) -> None:
-    random = Random(run)
-    line, blow = random.choice(RUNS), random.choice(list(STATUS))
-    whole_file, seconds = whole(line)
-    delays = [random.uniform(0, 1.2 * seconds), *random.choice([[], [random.uniform(0, 0.02)]])]
-    before = random.choice([None, b"as it was"])
-    status, said, after, left = cut(line, before, blow, delays)
-    what = f"run {run}, {line} and {blow} after {delays} s: {said!r}"
-    assert status in (0, STATUS[blow]), what
-    assert after in (before, whole_file), what
-    assert status or after == whole_file is not None, what
-    may_leave = blow == "SIGKILL" or len(delays) > 1  # a second signal may stop cleaning up
-    assert not left or (may_leave and all(name.startswith(".atwood-") for name in left)), what
-    assert all(line.startswith(b"atwood: ") for line in said.splitlines()), what
-
-
-if __name__ == "__main__":
-    for run in range(int(sys.argv[1])):
-        test_what_is_killed_at_any_instant_leaves_its_file_whole_or_as_it_was(run)
