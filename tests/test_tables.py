@@ -280,6 +280,8 @@ ASKED = [
     ("batch", "m1 (g),m2 (g),m3 (g)\n500,510,50\n", "column 'm3 (g)' may mean M (mass of the pulley)", "m1:g,m2:g,?"),
     ("fit --drop 0.5", "m1 (g),m2 (g),t,Δm (g)\n200,220,1.72,20\n", "'Δm (g)' may matter, and is not read", "m1:g,m2:g,t,?"),
     ("batch --only a", "m1 (g),m2 (g),dm (g),∆m (g),x\n500,510,10,10,7\n", "column 'dm (g)' may mean M (mass of the pulley)", "m1:g,m2:g,?,?"),
+    ("fit --drop 0.9", "m1 (g),m2 (g),t (s),t obs (s),t max,v after t (m/s)\n150,165,1.9,2,3,1\n", "'t obs (s)', 't max' may matter, and are not read", "m1:g,m2:g,t:s?,?,?"),
+    ("fit", "m1 (g),m2 (g),filmed acceleration (cm/s2),a (m/s2),h est\n150,165,35,0.4,1\n", "'filmed acceleration (cm/s2)' may matter, and is not read", "m1:g,m2:g,?,a:m/s2?"),
     ("fit --drop 0.5", "m1 (g),m2 (g),t 1st,t 2nd,t\n200,220,1.7,1.74,1.72\n", "column 't' stands beside 't 1st', and one may be computed, as a mean is", "m1:g,m2:g,t1,t2,?"),
     ("fit --drop 1m", "Wurf;0,02;0,03\n1;1,4;1,2\n", "m1 (0 if nothing hangs there), m2, t (or a) are missing; if headings that are numbers are loads, type one command a load, as --columns drop:m,-,t --m2 60g", "-,?,?"),
     ("fit --m1 0 --m2 50g --drop 1m", "T (s),T (s)\n1,2\n", "column 'T (s)' holds time, as another of that heading does; are they repeats?", "t:s,?"),
@@ -375,9 +377,9 @@ def test_tables_of_every_form_give_what_they_were_made_with(form: str) -> None:
 
 def test_nothing_is_left_out_in_silence(read: Any) -> None:
     """A label, a column to the right, rows of words, and a column that is a mean of the others."""
-    table = "Team,m1,m2,t1,t2,t3,Note\n1.5,1,2,3,5,4,7\n2.5,1,3,2,2.5,2.25,8\n3.5,1,4,1.9,2,1.95,9\nΣx,1,4,1,1,1,\n"
+    table = "Team,m1,m2,t1,t2,t3,t mean\n1.5,1,2,3,5,4,7\n2.5,1,3,2,2.5,2.25,8\n3.5,1,4,1.9,2,1.95,9\nΣx,1,4,1,1,1,\n"
     assert read(table).unused == [
-        "not read: 'Team', 'Note'.",
+        "not read: 'Team', 't mean'.",
         "row 4: not used, as 'Team' has a word there, and most rows a number.",
     ]
     assert read(table).doubts[-1].startswith("in each row t3 is the mean of the other repeats")

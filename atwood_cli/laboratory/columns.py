@@ -14,11 +14,13 @@ from ..tables.headings import (
     Heading,
     Naming,
     Vocabulary,
+    is_unit,
     may_be_mass,
     meaning_of,
     named,
     read_headings,
     recognised,
+    unit_within,
 )
 from ..tables.places import asked
 from ..tables.sheets import Sheet
@@ -86,9 +88,12 @@ def columns_of(sheet: Sheet, naming: Naming, given: Mapping[str, Input]) -> Colu
         if sum(bool(re.fullmatch(r"\d*[.,]\d+", column)) for column in sheet.columns) > 1:
             why += f"; if headings that are numbers are loads, {ONE_LOAD}"
         raise ask(why)
-    if doubts := [i for i in unread if sheet.has_numbers(i) and said[i] != UNREAD and may_matter(i)]:
+    not_said = [i for i in unread if sheet.has_numbers(i) and said[i] != UNREAD]
+    rivals = {i: own.place for i in not_said for own in headings if _is_alike(sheet.columns[i], own)}
+    if doubts := [i for i in not_said if i in rivals or may_matter(i)]:
         which = ", ".join(named(sheet.columns[i], i) for i in doubts)
-        raise ask(f"{which} may matter, and {'is' if len(doubts) == 1 else 'are'} not read")
+        why = f"{which} may matter, and {'is' if len(doubts) == 1 else 'are'} not read"
+        raise ask(why, doubtful={*rivals, *rivals.values()})
     kind: Kind = "a" if "a" in names else "time"
     if kind == "a":  # a height has no effect
         headings = [heading for heading in headings if heading.name != "drop"]
@@ -124,3 +129,11 @@ def _may_matter(columns: Sequence[str], place: int) -> bool:
         own = meaning_of(before, VOCABULARY)
         return own.name in MEASURED if own else not before.strip() and _may_matter(columns, place - 1)
     return column in INPUTS or may_be_mass(column) or bool(LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING]))
+
+
+def _is_alike(column: str, own: Heading) -> bool:
+    """Decide whether a heading has the name of a quantity that is read, too, so that one may be computed."""
+    words, unit = re.split(r"[\W_]+", column[:LONGEST_HEADING]), unit_within(column, own)
+    is_repeat = bool(own.number) or own.name in CONDITIONS
+    has_name = own.name in map(VOCABULARY.names.get, words)
+    return has_name and not is_repeat and (not unit or is_unit(unit, own))

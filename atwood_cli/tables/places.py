@@ -58,9 +58,14 @@ class NotUnderstood(Unreadable):
         lines = ["".join(f"  {set_cell_size(*x)}" for x in zip(row, sizes, strict=True)) for row in rows]
         options = "".join(f" --{name} '{OPEN}'" for name in self.options)
         typed = f"{re.sub(A_NAMING, '', shlex.join(command))} --columns {shlex.quote(self.typed)}{options}"
-        hint = f"Replace each {OPEN}, and type ({UNREAD} leaves a column unread):"
+        has_guess = any(word.endswith(OPEN) and word != OPEN for word in self.words)
+        guess = (
+            [f"  A word before {OPEN} is a guess: take the {OPEN} away if it is right."] if has_guess else []
+        )
+        other = "other " if has_guess else ""
+        hint = f"Replace each {other}{OPEN}, and type ({UNREAD} leaves a column unread):"
         hint = hint if OPEN in self.typed + options else "If this is right, type:"
-        return ["", *map(str.rstrip, lines), "", f"  {hint}", "", f"  {typed}"]
+        return ["", *map(str.rstrip, lines), "", *guess, f"  {hint}", "", f"  {typed}"]
 
 
 def asked(
@@ -71,11 +76,13 @@ def asked(
     given: Collection[str],
     missing_of: Callable[[Collection[str]], Sequence[str]],
     may_matter: Callable[[int], bool],
+    doubtful: Collection[int] = (),
 ) -> Unreadable:
     """Return the error that lists all columns, with words for those that are known or can be guessed.
 
     ``missing_of`` returns what is missing beside names, as those ``given`` for all rows, and ``may_matter``
-    decides on a place. What no column may hold is an option.
+    decides on a place. Those that are ``doubtful`` are open, even if they are read. What no column may hold
+    is an option.
     """
     why = "; ".join([why, *sheet.remarks])
     if not sheet.rows:  # as of frames and NDJSON, whose columns have names
@@ -92,7 +99,7 @@ def asked(
         except Unreadable:
             read[i], words[i] = UNREAD, OPEN
     for own in headings:
-        words[own.place] = _word(own, own.name, own.number)
+        words[own.place] = _word(own, own.name, own.number) + (OPEN if own.place in doubtful else "")
         if own.u:
             words[own.u.place] = _word(own.u, own.name, f"{own.number}_err")
     missing = missing_of({*given, *(own.name for own in meant if own)})
@@ -110,7 +117,7 @@ def asked(
         if len(fits) == 1:
             is_only = len(units[fits[0]]) == 1 and not may_matter(i)
             words[i] = f"{_short(fits[0])}:{units[fits[0]][i]}{'' if is_only else OPEN}"
-        elif fits or is_unclear or (said[i] != UNREAD and may_matter(i)):
+        elif fits or is_unclear or i in doubtful or (said[i] != UNREAD and may_matter(i)):
             words[i] = OPEN
     is_by_blanks = len(words) == 1 and any(SEVERAL.search(row[0]) for row in sheet.rows)
     if is_by_blanks or (nothing_measured and OPEN not in words):
