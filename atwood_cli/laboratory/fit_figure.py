@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..output.figure import BLUE, FAINT, INK, RED, saved, typeset, write_beside
+from ..output.figure import BLUE, FAINT, INK, RED, saved, typeset
 from ..output.forms import Picture
 from ..solver import physics
 from .estimate import Fitted
@@ -61,4 +61,6 @@ def save(fit: Fitted, picture: Picture) -> None:
         named = np.flatnonzero(fit.shown & (a > 0)).tolist()
         if len(named) > MOST_NAMED:
             named = [run for run in named if run in odd or hollow[run]]
-        write_beside(line, [(a[i], difference[i], runs[i]["rows"].replace(" ", ","), INK) for i in named])
+        beside: Any = {"textcoords": "offset points", "ha": "right", "va": "bottom"}
+        for i in named:
+            line.annotate(runs[i]["rows"].replace(" ", ","), (a[i], difference[i]), (-4, 4), **beside)

@@ -11,7 +11,6 @@ from contextlib import contextmanager
 from importlib import import_module
 from io import BytesIO
 from logging import ERROR, getLogger
-from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import escape
@@ -24,9 +23,7 @@ from .forms import Picture
 from .text import say_written, wrapped
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.path import Path as MatplotlibPath
 
 BLUE, RED, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b05d91", "#b07800", "#56b4e9"
 """Colours that differ on paper and without seeing red or green (M. Okabe, K. Ito, Color universal design)."""
@@ -35,10 +32,6 @@ INK, FAINT = "#222222", "#999999"
 WIDTH, HEIGHT, PANEL_HEIGHT = 6.4, 4.0, 2.0
 """The size of a picture with one pair of axes, and the height of each further pair, in inches."""
 LINE_CHARACTERS = 88
-BESIDE = [(x, y, by) for by in (6, 11, 17, 24, 32) for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1))]
-BESIDE += [(x, y, by) for by in (4, 8, 13, 19) for x in (1, -1) for y in (-1, 1)]
-"""Where words may stand: right or left of a point, above or below it, and by how many points of 1/72 inch."""
-ALIGNED = {-1: ("right", "top"), 0: ("center", "center"), 1: ("left", "bottom")}
 NAMES_IN_WORDS = re.compile(r"\b(mu|mu_k|(?:inertia|wrap|axle)(?= (?:=|from)))\b")
 SIDES_IN_WORDS = re.compile(r"\b[mTW][12]\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
@@ -128,9 +121,12 @@ def saved(picture: Picture, above: Sequence[str], below: str = "", panels: int =
 
 
 def _leave_symbols(figure: "Figure") -> None:
-    """Take values off a picture: T₁ = 12 N becomes T₁. Scales and legends keep their numbers."""
-    for text in (text for axes in figure.axes for text in axes.texts):
-        text.set_text(re.sub(r"\s(=|from|beyond) .*", "", text.get_text()))
+    """Take values off a picture: T₁ = 12 N becomes T₁. Scales and legends of curves keep their numbers."""
+    for axes in figure.axes:
+        for text in axes.texts:
+            text.set_text(re.sub(r"\s= .*", "", text.get_text()))
+        for text in legend.get_texts() if (legend := axes.get_legend()) else ():
+            text.set_text(re.sub(r"\s(from|beyond) .*", "", text.get_text()))
 
 
 def typeset(words: str) -> str:
@@ -145,54 +141,3 @@ def typeset(words: str) -> str:
 
 def _in_lines(words: str) -> str:
     return "\n".join(wrapped(typeset(words), LINE_CHARACTERS))
-
-
-def write_beside(
-    axes: "Axes", labels: Sequence[tuple[float, float, str, str]], all_or_none: bool = False
-) -> bool:
-    """Write words at points (x, y, words, colour) if they cover no other words and no lines there.
-
-    No words are nearer to another point than to their own. With ``all_or_none``, no words are written if some
-    cannot be. Nothing may change the size of the axes afterwards. Return whether all words are written.
-    """
-    figure: Any = axes.figure
-    if labels:
-        figure.draw_without_rendering()
-    paths, boxes = [*_drawn(axes)], [text.get_window_extent() for text in axes.texts]
-    edge, anchors = axes.bbox.padded(3), [axes.transData.transform(label[:2]) for label in labels]
-    before = len(boxes)
-    for (x, y, words, colour), anchor in zip(labels, anchors, strict=True):
-        for right, up, by in BESIDE:
-            look: Any = {"ha": ALIGNED[right][0], "va": ALIGNED[up][1], "color": colour}
-            look |= {"textcoords": "offset points", "annotation_clip": False}
-            text = axes.annotate(words, (x, y), (right * by, up * by), **look)
-            text.set_in_layout(False)
-            box = text.get_window_extent().padded(2)
-            off = [hypot(*(at.clip(box.min, box.max) - at)) for at in (anchor, *anchors)]
-            is_near, is_inside = off[0] < min(off) + 1, edge.contains(*box.min) and edge.contains(*box.max)
-            covers = box.count_overlaps(boxes) or any(path.intersects_bbox(box, False) for path in paths)
-            if is_near and is_inside and not covers:
-                boxes.append(box)
-                break
-            text.remove()
-    has_room = len(boxes) == before + len(labels)
-    if all_or_none and not has_room:
-        for written in axes.texts[before:]:
-            written.remove()
-    return has_room
-
-
-def _drawn(axes: "Axes") -> Iterator["MatplotlibPath"]:
-    """Yield all lines, arrows and edges, in pixels."""
-    from matplotlib.path import Path as MatplotlibPath
-
-    for line in axes.lines:
-        if line.get_linestyle() != "None":
-            yield line.get_path().transformed(line.get_transform())
-    for drawn in axes.collections:
-        arrows: Any = drawn
-        if hasattr(arrows, "XY"):
-            for tail, *way in zip(arrows.XY, arrows.U, arrows.V, strict=True):
-                yield MatplotlibPath([tail, tail + way]).transformed(axes.transData)
-        else:
-            yield from (path.transformed(drawn.get_transform()) for path in drawn.get_paths())

@@ -7,7 +7,7 @@ on the left, where the string of m1 hangs down, and runs clockwise over the top.
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import pi, radians, sqrt
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..solver import arc
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
-from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, saved, typeset, write_beside
+from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, saved, typeset
 from .forms import Picture
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ STRING, LARGER_SIDE, LEAST_SIDE = 0.95, 0.5, 1 / 3  # of a mass; of its block; t
 BETWEEN_ARROWS = radians(20)  # along the arc
 LONGEST_ON_ARC, LEAST_ON_ARC = 0.9 * BETWEEN_ARROWS, 0.01
 NORMAL_AT, FRICTION_AT = 1.05, 0.9  # distances from the axle at which arrows end and start
+BEYOND_TIP = 0.16  # of an arrow, where its symbol stands
 BETWEEN_WEIGHTS = 18  # characters for which there is room
 ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the axle, and a length
 
@@ -87,7 +88,7 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
         if decided.ends_hang_down:
             _draw_masses(machine, answers, lengths)
         else:
-            _draw_tensions(machine, answers, lengths, radians(wrap))
+            _draw_tensions(machine, lengths, radians(wrap))
 
 
 def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterator[str]:
@@ -111,6 +112,8 @@ def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterato
     if answers.decided.is_driven and answers["drive_force"] is not None:
         yield f"The motor or the brake, {format_number(answers['drive_force'])} N at the rim, is not drawn."
     if not answers.decided.ends_hang_down:
+        tensions = (f"T{end} = {_number(answers[f'tension_{end}'])} N" for end in "12")
+        yield f"{', '.join(tensions)}."
         yield "m2 hangs over a guide that is not drawn." if kind else "The mass is not drawn."
 
 
@@ -252,19 +255,23 @@ def _draw_masses(axes: "Axes", answers: Answers, lengths: Mapping[str, float]) -
     axes.update_datalim([(0, height - 0.1)])
 
 
-def _draw_tensions(axes: "Axes", answers: Answers, lengths: Mapping[str, float], phi: float) -> None:
-    """Draw the tensions as arrows along the string where it leaves the pulley, with their values."""
-    labels = []
-    for name, length in lengths.items():
-        angle = 0 if name == "T1" else phi
-        arrow = length * (-1j if name == "T1" else 1j) * np.exp(-1j * angle)
-        _draw_arrows(axes, [_rim(angle)], [arrow], INK)
-        tip, tension = _rim(angle) + arrow, _number(answers[f"tension_{name[1]}"])
-        labels.append((tip.real, tip.imag, typeset(f"{name} = {tension} N"), INK))
-    axes.autoscale_view()
-    spokes = np.outer([0, 1], _rim(np.linspace(0, TURN, 37)))
-    axes.plot(spokes.real, spokes.imag, visible=False)  # keeps words off the pulley
-    write_beside(axes, labels)
+def _draw_tensions(axes: "Axes", lengths: Mapping[str, float], phi: float) -> None:
+    """Draw tensions along the string where it leaves the pulley, their symbols where tips have most room."""
+    tips, drawn = dict[str, Any](), [np.zeros(1)]
+    for name, angle, down in (("T1", 0.0, -1j), ("T2", phi, 1j)):
+        if name in lengths:
+            arrow = lengths[name] * down * np.exp(-1j * angle)
+            _draw_arrows(axes, [_rim(angle)], [arrow], INK)
+            tips[name] = _rim(angle) + arrow
+    for arrows in cast(Any, axes.collections):
+        tails, along = arrows.XY @ [1, 1j], arrows.U + 1j * arrows.V
+        drawn.append((tails + np.linspace(0, 1, 20)[:, None] * along).ravel())
+    for name, tip in tips.items():
+        around = tip + BEYOND_TIP * np.exp(1j * np.linspace(0, TURN, 16))
+        place = max(around[abs(around) > 1], key=lambda z: min(abs(np.concatenate(drawn) - z)))
+        axes.text(place.real, place.imag, typeset(name), ha="center", va="center")
+        axes.update_datalim([(place.real, place.imag)])
+        drawn.append(np.array([place]))
 
 
 def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:

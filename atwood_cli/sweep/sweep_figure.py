@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..explain.messages import unmarked
 from ..numbers.digits import is_infinite
-from ..output.figure import COLOURS, FAINT, INK, axis_words, saved, typeset, write_beside
+from ..output.figure import COLOURS, FAINT, INK, axis_words, saved, typeset
 from ..output.forms import Picture
 from ..output.text import wrapped
 from ..solver.answers import Answers
@@ -113,9 +113,9 @@ def _curve(
             places = [change.holds_at, change.differs_at]
             if change.after[0] != "slip":
                 places.reverse()  # the string holds there
-            height = next((y for x in places if not isnan(y := heights[float(x)])), nan)
-            words = f"{BEGINS[change.after[0]]} {along.in_units(change.at)}"
-            marks.append((float(change.at), height, words))
+            if there := [y for x in places if not isnan(y := heights[float(x)])]:
+                words = f"{BEGINS[change.after[0]]} {along.in_units(change.at)}"
+                marks.append((float(change.at), there[0], words))
     return Curve(name, point, [*heights], [*heights.values()], marks)
 
 
@@ -159,17 +159,14 @@ def save_sweep(sweep: Sweep, names: Sequence[str], digits: int | None, picture: 
                 _draw(axes, curve, place, ", ".join(filter(None, [*symbols, curve.point])), along.is_list)
             _set_heights(axes, _numbers(curves))
             _add_legend(axes)
-        first = [curve for curve in panels[0] if curve.quantity == panels[0][0].quantity]
-        labels = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
-        if not write_beside(all_axes[0], labels, all_or_none=True):
-            all_axes[0].plot([], [], "o", color=INK, ms=4, label="regime changes")
-            _add_legend(all_axes[0])
 
 
 def _add_legend(axes: "Axes") -> None:
     """Explain the curves beside the axes, if they need it."""
-    if axes.get_legend_handles_labels()[1]:
-        axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), handlelength=3, labelspacing=0.3)
+    handles, labels = axes.get_legend_handles_labels()
+    if entries := dict(zip(labels, handles, strict=True)):  # each once
+        look: Any = {"bbox_to_anchor": (1, 0.5), "handlelength": 3, "labelspacing": 0.3}
+        axes.legend(entries.values(), entries, loc="center left", **look)
 
 
 def _set_places(axes: "Axes", along: Range) -> None:
@@ -202,5 +199,5 @@ def _draw(axes: "Axes", curve: Curve, place: int, label: str, is_list: bool) -> 
         axes.plot(curve.xs, curve.ys, MARKERS[place], color=COLOURS[place], ms=5, label=label)
     else:
         axes.plot(curve.xs, curve.ys, color=COLOURS[place], ls=LINE_STYLES[place], label=label)
-    for x, y, _ in curve.marks:
-        axes.plot([x], [y], "o", color=INK, ms=4, zorder=3, clip_on=False)
+    for x, y, words in curve.marks:
+        axes.plot([x], [y], "o", color=INK, ms=4, label=words, zorder=3, clip_on=False)
