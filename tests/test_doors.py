@@ -137,12 +137,8 @@ PYTHON: dict[str, Callable[[], Any]] = {
     "table": lambda: solve_table(SCENES).rows(),
     "fit": lambda: [*(made := fit(FALLS, drop="1.1(1)")), str(made)],
 }
-ROUGH: Any = {"prec": 1, "rounding": ROUND_UP, "Emin": 0, "Emax": 0, "clamp": 1}
-CALLERS = {
-    "traps all": Context(traps=[*Context().flags]),
-    "one digit": Context(**ROUGH, traps=[]),
-    "both": Context(**ROUGH, traps=[*Context().flags]),
-}
+STRICT = Context(1, ROUND_UP, Emin=0, Emax=0, clamp=1, traps=[*Context().flags])
+"""What is computed in it is rounded to a digit, and whatever is rounded or unusual is an exception."""
 
 
 def forget() -> None:
@@ -153,15 +149,14 @@ def forget() -> None:
             kept.cache_clear()
 
 
-@pytest.mark.parametrize("caller", CALLERS)
-def test_the_decimal_context_of_the_caller_changes_nothing(caller: str) -> None:
+def test_the_decimal_context_of_the_caller_changes_nothing() -> None:
     """Who trapped a decimal made of a float had an exception."""
     transcripts = [kept for kept in KEPT if kept.file in CASES and not kept.lacks][:: 800 // many(100)]
     texts = {kept.text: lambda kept=kept: essence(kept.today()) for kept in transcripts}
     for name, door in (PYTHON | texts).items():
         wanted = essence(name) if name in texts else door()
         forget()
-        with localcontext(CALLERS[caller]) as context:
+        with localcontext(STRICT) as context:
             context.clear_flags()
             got = door()
         assert repr(got) == repr(wanted), name

@@ -11,11 +11,9 @@ from typing import Any
 
 import pytest
 
-from atwood_cli import solve
 from atwood_cli.output.files import written_beside
 
-from .conftest import many
-from .tools.running import HANGS, around, process
+from .tools.running import HANGS, around
 
 
 def test_an_error_leaves_all_as_it_was(tmp_path: Path) -> None:
@@ -144,11 +142,3 @@ def test_each_output_and_each_message_is_one_write(
         assert all(message.endswith(b"\n") for message in messages)
     for end in (out, err, stdout, stderr):
         end.close()
-
-
-def test_no_line_of_processes_side_by_side_is_torn() -> None:
-    most = many(200)
-    words = "-m atwood_cli solve --m1 1 --M 9 --only a --m2"
-    ran = process(shell=f'seq {most} | PYTHONUNBUFFERED=1 xargs -P 4 -n 1 "$PYTHON" {words}')
-    expected = [repr(solve(1, m2, M=9).acceleration) for m2 in range(1, most + 1)]
-    assert sorted(ran.out.splitlines()) == sorted("0" if a == "0.0" else a for a in expected)
