@@ -10,7 +10,7 @@ import atwood_cli
 from .tools.regenerate import CASES
 
 PACKAGE, TESTS = Path(atwood_cli.__file__).parent, Path(__file__).parent
-SENTENCES = ("SceneError", "Malformed", "Rule", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")
+SENTENCES = "SceneError Malformed Rule Unreadable OSError FileExistsError ArithmeticError ask".split()
 
 
 def fragments(node: ast.AST) -> list[str]:

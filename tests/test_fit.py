@@ -512,6 +512,7 @@ def test_in_python_it_is_what_json_has() -> None:
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),
         ({"m1": [1], "m2": [2], "a": [1], "unc": [1]}, {}, ValueError, "cannot read the runs: 'unc' may matter, and is not read; give columns='m1,m2,a,?'"),
         ({"A": [100], "B": [110], "C": [2]}, {"columns": "m1:g,-", "m2": "110g", "drop": 1}, ValueError, "cannot read the runs: say which columns are t or a; give columns='m1:g,?,?'"),
+        ({"A": [1], "B": [2]}, {"columns": "?,?"}, ValueError, "cannot read the runs: its columns are to be decided; give columns='a,?'"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' conflicts with g, which gives it; leave one of them out"),
         (EQUAL, {}, ArithmeticError, "2 runs cannot determine the pulley's inertia and axle friction: give 3 or more; some masses are 0.5 kg or more; if g are meant, say so, as in m1 (g)"),
