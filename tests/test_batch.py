@@ -14,17 +14,32 @@ from itertools import count
 from pathlib import Path
 from random import Random
 from typing import Any
+from unittest.mock import patch
 
 import polars as pl
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from atwood_cli import SceneError, solve, solve_table
 from atwood_cli.cli import run
 from atwood_cli.reading.units import UNITS
 from atwood_cli.tables import sources
 
-from .conftest import many
-from .tools.running import FROM, HANGS, TOP, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
+from .conftest import examples, many
+from .tools.running import (
+    FROM,
+    HANGS,
+    TOP,
+    Atwood,
+    Batch,
+    Ran,
+    called,
+    on_real_terminal,
+    on_terminal,
+    plain,
+    process,
+)
 
 TEXT = "m1,m2\n1,3\n"
 
@@ -135,6 +150,28 @@ def test_a_cell_is_a_number_where_solve_takes_it_for_one(batch: Batch) -> None:
         except SceneError:
             taken = False
         assert taken == (not error) or "has an uncertainty" in error, word
+
+
+LABELS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\r"), max_size=4)
+
+
+@examples(100)
+@given(
+    st.lists(st.tuples(LABELS, LABELS), min_size=1),
+    st.sampled_from(",;\t"),
+    st.sampled_from([1 << 20, 1, 17]),
+)
+def test_cells_come_out_as_they_went_in(labels: list[tuple[str, str]], separator: str, piece: int) -> None:
+    """By the standard library's reader, however many bytes are read at a time."""
+    table = io.StringIO(newline="")
+    rows = [["m1", "m2", "n", "p q"], *(["1", "3", *row] for row in labels)]
+    csv.writer(table, delimiter=separator, lineterminator="\n").writerows(rows)
+    kind = "tsv" if separator == "\t" else "csv"
+    with patch.object(sources, "BLOCK_BYTES", piece):
+        ran = called(["batch", "-", "--from", kind, "--only", "a"], table.getvalue().encode())
+    came = [*csv.reader(io.StringIO(ran.out, newline=""), delimiter=separator)]
+    assert [row[:4] for row in came] == rows
+    assert {(a, error) for *_, a, error in came[1:]} == {("4.903325", "")}
 
 
 # Tables that are none

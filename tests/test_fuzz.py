@@ -10,10 +10,9 @@ import json
 import re
 import sys
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import chdir
 from datetime import timedelta
-from fractions import Fraction
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -23,12 +22,11 @@ from unittest.mock import patch
 import pytest
 from hypothesis import given, settings
 
-from atwood_cli.tables import sources
 from atwood_cli.tradeoff import measure
 
 from .conftest import many
 from .tools import fuzz
-from .tools.running import Ran, called
+from .tools.running import called
 
 BUSY = timedelta(minutes=1)  # for any run, on a busy machine
 MOST_SAID = 2000  # characters of a sentence
@@ -67,88 +65,6 @@ def check_run(run: fuzz.Run) -> None:
         json.loads(ran.out, parse_constant=lambda word: 1 / 0)
 
 
-# Tables of text, cell for cell
-
-
-def batch(content: bytes, kind: str, piece: int) -> Ran:
-    """Accelerations of a table that is read in pieces of that size."""
-    with patch.object(sources, "BLOCK_BYTES", piece):
-        return called(["batch", "-", "--from", kind, "--only", "a"], content)
-
-
-def acceleration(masses: Sequence[object]) -> float | None:
-    """That of two masses; None where they are not two digits, of which one is above 0."""
-    if not all(re.fullmatch(r"\s*\d\s*", str(mass)) for mass in masses):
-        return None
-    m1, m2 = map(int, map(str, masses))
-    return float(Fraction("9.80665") * (m2 - m1) / (m1 + m2)) if m1 or m2 else None
-
-
-def rows_of(text: str, separator: str) -> list[tuple[str, list[str]]] | None:
-    """The records of CSV with their cells, without blank lines; None where one is malformed.
-
-    A quotation mark opens a cell where one begins, and closes it where one ends; elsewhere in a cell that is
-    not quoted it stands for itself.
-    """
-    cell = rf'"(?:[^"]|"")*"|(?:[^"{separator}\r\n][^{separator}\r\n]*)?'
-    row = re.compile(rf"((?:{cell})(?:{separator}(?:{cell}))*)(?:\r?\n|\r?\Z)")
-    rows, place = [], 0
-    while place < len(text):
-        if not (found := row.match(text, place)):
-            return None
-        place = found.end()
-        cells = re.findall(rf"(?:\A|{separator})({cell})", found[1])
-        if found[1].strip() or len(cells) > 1:
-            cells = [word[1:-1].replace('""', '"') if word[:1] == '"' else word for word in cells]
-            rows.append((found[1], cells))
-    return rows
-
-
-def check_cells(table: tuple[str, str, int]) -> None:
-    """Records of CSV come out as they went in, surplus cells joined to the last; or they are refused."""
-    text, separator, piece = table
-    ran = batch(text.encode(), "tsv" if separator == "\t" else "csv", piece)
-    with_line_feeds = re.sub(r"\r(?!\n)", "\n", text)  # a carriage return alone ends a line, too
-    (head, columns), *rows = rows_of(with_line_feeds.removeprefix(MARK), separator) or [("", [])]
-    if not columns:
-        assert ran.status == 1
-        assert "cannot read" in ran.err
-        return
-    assert ran.out.startswith(MARK) == text.startswith(MARK)
-    came = rows_of(ran.out.removeprefix(MARK), separator) or []
-    assert came[0] == (separator.join([head, "acceleration", "error"]), [*columns, "acceleration", "error"])
-    for (record, cells), (printed, (*kept, result, error)) in zip(rows, came[1:], strict=True):
-        lacking, surplus = len(columns) - len(cells), len(cells) > len(columns)
-        masses = [] if lacking else [cells[columns.index(name)] for name in ("m1", "m2")]
-        right = acceleration(masses) if masses else None
-        assert surplus or printed.startswith(record + separator * (lacking + 1))
-        if surplus:
-            cells = [*cells[: len(columns) - 1], separator.join(cells[len(columns) - 1 :])]
-        assert kept == cells + [""] * lacking
-        decimal = result if separator == "," else result.replace(",", ".")  # as the table has decimal commas
-        assert decimal == ("" if right is None else repr(right))
-        assert bool(error) == (right is None)
-
-
-def check_lines(table: tuple[list[str], str, int]) -> None:
-    """Lines of NDJSON come out as they went in, or are errors."""
-    lines, end, piece = table
-    ran = batch(("\n".join(lines) + end).encode("latin-1"), "ndjson", piece)
-    lines = [line for line in lines if line.strip()]
-    assert lines or "it is empty" in ran.err
-    for line, printed in zip(lines, ran.out.split("\n")[:-1], strict=True):
-        result = json.loads(printed)
-        try:
-            row = json.loads(line, parse_constant=lambda word: 1 / 0)
-        except (ValueError, ZeroDivisionError):
-            row = None
-        is_whole = isinstance(row, dict) and line.count('"m1"') < 2
-        right = acceleration([row.get(name) for name in ("m1", "m2")]) if is_whole else None
-        assert result["acceleration"] == right
-        assert bool(result["error"]) == (right is None)
-        assert not is_whole or printed.startswith(line.removesuffix("}"))
-
-
 # Values of tables that are deep or huge
 
 SIZE = 600_000  # a record has less than 1 MB
@@ -180,9 +96,7 @@ def test_a_deep_or_huge_value_is_an_error_of_its_row(kind: str, name: str) -> No
 
 RUNS = {"solve": 400, "contact": 160, "sweep": 200, "batch": 280, "fit": 280, "tradeoff": 20}
 PROMISES: dict[str, tuple[Any, Callable[[Any], None], int]] = {
-    **{command: (fuzz.runs(command), check_run, count) for command, count in RUNS.items()},
-    "cells": (fuzz.tables(), check_cells, 200),
-    "lines": (fuzz.lines(), check_lines, 100),
+    **{command: (fuzz.runs(command), check_run, count) for command, count in RUNS.items()}
 }
 """What is drawn, what is promised of it, and how many are tried with --every-digit; otherwise a quarter."""
 

@@ -50,18 +50,7 @@ SHAPES = "{} {} {}{u} {}_{u} {}+/-{} {}({}) {}±{} {}:{}:{} {}:{}:5:log {}/{} -{
 HEADINGS = 'M|time 2|a1|m1 (g)|t/s|u(a)|±|u (%)|Δm|m1+m2|h_cm|Team|T1||Run 1: Time (s)|a (m/s²) Run #1|"m1\n(g)"'.split("|")
 HEADINGS += "u(((|u(u(a))|+/-|/|a/(|Zeit".split("|")
 AROUND = '||||# about|Lab 3|sep=;|sep=,|;;;|,,|5" drop|Mean,,'.split("|")
-LABELS = [
-    *('"', '""', '"""', '"a"', '"a""b"', '"x,y;z\tw"', '"p\nq"', '"p\r\nq"', '"\n"', "a\rb", "\r", 'a"', '5" d', '"a"b'),
-    *("", "", "", " ", "x", "µ", "\u2028", "\x00", "a,b", "\t", ";", "\x85", "#", "m1", "NA"),
-]
-LINES = ["", " ", "[1]", "x", "{}", "null", '{"m1":1', '{"m1":1,"m1":2,"m2":3}', '{"m1":NaN,"m2":3}', '{"m1":1,"m2":3}}', "\xff"]
 # fmt: on
-ODD = [0.03, 0.1, 0.4]
-"""The shares of cells or lines that are odd, where these are what is tried."""
-PIECES = [1 << 20, 1, 3, 17]
-"""Bytes of a table that are read at a time."""
-
-
 class Run(NamedTuple):
     """A command line, and the file `in.csv` or another that it may read."""
 
@@ -205,31 +194,3 @@ def runs(draw: st.DrawFn, command: str) -> Run:
         place = draw(st.integers(0, len(line)))
         line.insert(place, dice.choice([*EDGES, *TEXTS, "--m", "-m1", "-h", "--version"]))
     return Run(line, source if source != "-" else "in.csv", content)
-
-
-@st.composite
-def tables(draw: st.DrawFn) -> tuple[str, str, int]:
-    """CSV of two masses of one digit each and of labels, its separator, and the bytes that are read at a time."""
-    dice = Dice(draw, ODD)
-    separator = dice.choice(",;\t")
-    columns = draw(st.permutations(["m1", "m2", *["n", "p q", '"r\ns"'][: dice.choice([1, 0, 3])]]))
-    rows = [columns]
-    for _ in range(dice.choice([3, 0, 1, 6])):
-        row = [dice.choice("5203146789") if name in MASSES else "abc" for name in columns]
-        row = [dice.choice(LABELS) if dice.is_odd() else cell for cell in row]
-        is_cut = dice.chance(dice.odd / 5)
-        rows.append(dice.choice([row[:-1], row * 2, [], [" "], row[:1]]) if is_cut else row)
-    return dice.text(rows, separator), separator, dice.choice(PIECES)
-
-
-@st.composite
-def lines(draw: st.DrawFn) -> tuple[list[str], str, int]:
-    """NDJSON of two masses, what is behind it, and the bytes that are read at a time."""
-    dice = Dice(draw, ODD)
-    made = []
-    for _ in range(dice.choice([3, 1, 6])):
-        m1, m2 = (int(dice.choice("5203146789")) for _ in MASSES)
-        row: dict[str, object] = {"m1": m1, "n": [{"q": '"}'}], "m2": m2}
-        row |= dice.choice([{"m1": None}, {"m2": "x"}, {"M": None}]) if dice.is_odd() else {}
-        made.append(dice.choice(LINES) if dice.is_odd() else json.dumps(row))
-    return made, "\n" * dice.choice([1, 0, 2]), dice.choice(PIECES)
