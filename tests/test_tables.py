@@ -386,6 +386,27 @@ def test_nothing_is_left_out_in_silence(read: Any) -> None:
     assert not any("is the mean" in doubt for doubt in read(table.replace("2.25", "2.24")).doubts)
 
 
+MEANS_OF_REPEATS = "150,165,1.86|150,165,1.91|150,165,1.885|155,185,1.38|155,185,1.34|155,185,1.36|160,200,1.17|160,200,1.22|160,200,1.195"
+MEAN_OF_RUNS = "150,165,1.71,1.73|150,175,1.322,1.301|150,190,1.071,1.066|150,185,1.3677,1.3657"
+MARKS = "150,165,.53|150,165,.92|150,190,.35|150,190,.60"
+NO_REPEATS = [
+    (MEANS_OF_REPEATS, "1.195", "1.197", "In each run the last row is the mean of the others; if it was computed, leave out rows 3, 6, 9."),
+    (MEAN_OF_RUNS, "1.3677", "1.3667", "The last row is the mean of the others; if it was computed, leave out row 4."),
+    (MARKS, ".92", ".55", "The rows of each run differ as a whole, as marks of one fall do: are they of one height?"),
+]  # fmt: skip
+"""Runs, a text to replace by another so that they are honest repeats, and what is said else."""
+
+
+@pytest.mark.parametrize(("rows", "computed", "measured", "doubt"), NO_REPEATS)
+def test_rows_that_are_no_repeats_are_doubted(rows: str, computed: str, measured: str, doubt: str) -> None:
+    """Rows of means counted as runs, or as repeats, as did times at several heights of one fall."""
+    headings = "m1 (g),m2 (g),t1,t2" if rows is MEAN_OF_RUNS else "m1 (g),m2 (g),t"
+    table = f"{headings}|{rows}".replace("|", "\n")
+    fit = ["fit", "-", "--drop", "70cm", "--axle", "0", "--only", "rim_mass"]
+    assert doubt[1:] in called(fit, table.encode()).err
+    assert doubt[1:] not in called(fit, table.replace(computed, measured).encode()).err
+
+
 def test_a_word_that_differs_between_repeats_is_doubted() -> None:
     """Two pulleys were pooled without a word; with --only, no column and no row that is not used was named."""
     table = "Belt,Who,t,m1 (g),m2 (g),All\nold,K1,2,90,95,x\n,K2,1.5,90,99,x\nnew,L1,2.5,90,95,x\n,L2,1.4,90,100,x\n,L3,,90,99,x\n"

@@ -134,6 +134,9 @@ def _may_matter(columns: Sequence[str], place: int) -> bool:
 def _is_alike(column: str, own: Heading) -> bool:
     """Decide whether a heading has the name of a quantity that is read, too, so that one may be computed."""
     words, unit = re.split(r"[\W_]+", column[:LONGEST_HEADING]), unit_within(column, own)
-    is_repeat = bool(own.number) or own.name in CONDITIONS
+    is_of_others = own.number or own.name in (
+        *MASSES,
+        *CONDITIONS,
+    )  # as a mean of repeats, or a sum of masses
     has_name = own.name in map(VOCABULARY.names.get, words)
-    return has_name and not is_repeat and (not unit or is_unit(unit, own))
+    return has_name and not is_of_others and (not unit or is_unit(unit, own))

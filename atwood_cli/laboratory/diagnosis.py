@@ -49,6 +49,8 @@ WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
 LEAST_SHARE, MOST_SHARE = 1e-4, 2.0
 """An acceleration outside these shares of that without a pulley and friction must be a mistake."""
+MOST_KINDS = 50
+"""The most columns, or rows of a run, that are compared as a whole."""
 CHECK = "check masses, heights, measurements, their units and signs"
 
 
@@ -265,20 +267,26 @@ def _far_runs(fit: Fitted) -> tuple[Distances, Line]:
 
 
 def columns_in_doubt(runs: Runs, used: Selection) -> list[str]:
-    """Say which columns of repeats differ from others as a whole, as those of another pulley or load do.
+    """Say which columns of repeats, or rows of runs, differ from others as a whole, as other loads do.
 
     Logarithms are compared, as another pulley or load changes times, or accelerations, by a share.
     """
     values = runs.sign[runs.run] * runs.values
     places = np.flatnonzero(used[runs.run] & (values > 0))
-    names, column = np.unique([runs.cells[i].split(":")[1] for i in places.tolist()], return_inverse=True)
-
-    if len(names) < 2:
+    cells = [runs.cells[i].split(":") for i in places.tolist()]
+    nth = {str(row): str(i) for rows in runs.rows for i, row in enumerate(rows)}
+    by_rows = len({word for _, word in cells}) < 2 and sum(len(rows) > 1 for rows in runs.rows) > 1
+    kinds = [nth[row] if by_rows else word for row, word in cells]
+    names, column = np.unique(kinds, return_inverse=True)
+    if not 1 < len(names) <= MOST_KINDS:
         return []
     rounding = float(np.mean((runs.step / values[places]) ** 2)) / 12
     p_value, spread = spread_of_columns(np.log(values[places]), runs.run[places], column, rounding)
     words = f"columns {shortened(', '.join(names))} differ as a whole: are they of one pulley and one load?"
-    return [f"{words} If not, {ONE_LOAD}."] if p_value < RARE and spread > WIDE_SPREAD else []
+    words = f"{words} If not, {ONE_LOAD}."
+    if by_rows:
+        words = "the rows of each run differ as a whole, as marks of one fall do: are they of one height?"
+    return [words] if p_value < RARE and spread > WIDE_SPREAD else []
 
 
 # Runs that no pulley has

@@ -44,6 +44,8 @@ CART = 5
 ZERO = re.compile(r"[+-]?0+([.,]0*)?( ?[^\W\d_]+)?|")
 MEASURABLE = 1e-30, 1e30
 REACHES_0 = "has an uncertainty that reaches 0"
+BY_CHANCE = 1e-3
+"""The probability below which numbers that are the means of others are taken to be computed."""
 OF_RUNS = (*MASSES, "drop")
 """What a run gives; rows with the same numbers are one run."""
 OUT_OF_RANGE = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
@@ -216,26 +218,42 @@ def _words_apart(sheet: Sheet, columns: Columns, runs: RowsOfRuns) -> list[str]:
 
 
 def _means_among_repeats(runs: Runs) -> list[str]:
-    """Say which column of repeats is the mean of the others in every row, more often than by chance."""
-    rows = defaultdict[str, dict[str, float]](dict)
-    for cell, value in zip(runs.cells, runs.values, strict=True):
+    """Say which column, last row of each run, or last row of all is the mean of the others."""
+    rows = defaultdict[int, dict[str, float]](dict)
+    for cell, value in zip(runs.cells, runs.values.tolist(), strict=True):
         row, _, word = cell.partition(":")
-        rows[row][word] = value
+        rows[int(row)][word] = value
     words = sorted({word for cells in rows.values() for word in cells})
-    whole = np.array([[cells[x] for x in words] for cells in rows.values() if len(cells) == len(words)])
-    for place, word in enumerate(words if len(words) > 2 and len(whole) > 2 else ()):
-        others, step = np.delete(whole, place, axis=1), _step(whole[:, place])
-        off = abs(whole[:, place] - others.mean(axis=1))
-        if (off < 0.51 * step).all() and others.std(axis=1).mean() > 4 * step:  # beyond chance
+    whole = [cells for cells in rows.values() if len(cells) == len(words)]
+    for word in words:
+        if _are_means([(cells[word], [cells[x] for x in words if x != word]) for cells in whole]):
             what = f"in each row {word} is the mean of the other repeats"
             return [f"{what}; if it was computed, it is no repeat: leave it unread."]
+    repeated = [used for run in runs.rows if len(used := [row for row in run if row in rows]) > 2]
+    for what, blocks in (("in each run the last row", repeated), ("the last row", [sorted(rows)])):
+        last = [(x, word, others) for *others, x in blocks for word in rows[x]]
+        if _are_means(
+            [(rows[x][word], [rows[y][word] for y in ys if word in rows[y]]) for x, word, ys in last]
+        ):
+            left_out = in_words(*(block[-1] for block in blocks))
+            return [f"{what} is the mean of the others; if it was computed, leave out {left_out}."]
     return []
+
+
+def _are_means(pairs: Sequence[tuple[float, Sequence[float]]]) -> bool:
+    """Decide whether each number is the mean of the others beside it, more often than by chance."""
+    step, chance = _step(value for value, _ in pairs), 1.0
+    for value, others in pairs:
+        if len(others) < 2 or abs(value - sum(others) / len(others)) > 0.51 * step:
+            return False
+        chance *= min(1.0, step / (2.5 * float(np.std(others)) or step))  # at the peak of a normal density
+    return chance < BY_CHANCE
 
 
 def _step(values: Iterable[float]) -> float:
     """Return the step of the last digit of any of these values."""
     exponents = (ALL_DIGITS.normalize(Decimal(str(x))).as_tuple().exponent for x in values)
-    return 10.0 ** min(0, *map(int, exponents))
+    return 10.0 ** min([0, *map(int, exponents)])
 
 
 def _in_own_terms(name: str, read: Input, by: Mapping[str, Any]) -> Input:
