@@ -2,8 +2,11 @@
 
 import re
 import zipfile
+from collections.abc import Iterable
+from contextlib import redirect_stdout
 from decimal import Decimal
 from fractions import Fraction
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +19,8 @@ from atwood_cli.explain.derivation import Explanation, explain
 from atwood_cli.explain.equations import Derivation, Equation
 from atwood_cli.explain.given import WEIGHTS, inputs_in_words
 from atwood_cli.numbers.digits import is_infinite
-from atwood_cli.output.typeset import as_lines, as_markdown, chain, written
+from atwood_cli.output.page import Page
+from atwood_cli.output.typeset import chain, print_explanation, written
 from atwood_cli.reading.scenes import read_answers
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES, QUANTITIES
@@ -33,6 +37,15 @@ kinds = pytest.mark.parametrize("kind", SCENES)
 
 def told_of(kind: str, digits: int | None = None) -> Explanation:
     return explain(read_answers(SCENES[kind], digits))
+
+
+def printed(given: Iterable[str], found: Explanation, width: int | None = None) -> str:
+    """The derivation as text of that width, or as Markdown."""
+    with redirect_stdout(StringIO()) as out:
+        page = Page(is_plain=True, is_markdown=width is None)
+        page.width = width or page.width
+        print_explanation(page, given, found)
+    return out.getvalue()
 
 
 def all_equations(found: Explanation) -> list[Equation]:
@@ -142,8 +155,8 @@ def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits
     check_results(found, scene, digits or 6)
     for equation in equations(found):
         check_numbers(equation, digits or 6)
-    assert [*as_lines([], found, 80)]
-    check_handout("\n".join(as_markdown([], found)))
+    assert printed([], found, 80)
+    check_handout(printed([], found))
 
 
 # Symbols agree
@@ -268,7 +281,7 @@ def test_a_lesson_derives_what_is_asked_for_and_what_that_needs(kind: str) -> No
 def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str) -> None:
     found = told_of(kind, 20)
     for width in (40, 80):
-        lines = [line for line, _ in as_lines(["m1 = 1 kg"], found, width)]
+        lines = printed(["m1 = 1 kg"], found, width).splitlines()
         # A number is not parted from its unit, and twenty digits may then be too wide.
         assert all(len(line) <= width or re.fullmatch(r" *(\S*\d )?\S+", line) for line in lines)
         words = " ".join(lines).split()
@@ -292,7 +305,7 @@ IN_MATHEMATICS = re.compile(r"\$\$.*?\$\$|\$.*?\$", re.DOTALL)
 
 def handout(given: Any) -> str:
     answers = read_answers(given, None)
-    return "\n".join(as_markdown(inputs_in_words(answers).values(), explain(answers)))
+    return printed(inputs_in_words(answers).values(), explain(answers))
 
 
 def check_handout(page: str) -> None:

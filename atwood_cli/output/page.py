@@ -17,7 +17,8 @@ Part = TypeVar("Part")
 Groups = Sequence[Sequence[Sequence[str]]]
 """Groups of rows of cells."""
 
-PIPE_WIDTH = 80
+MOST_WIDTH = 80
+"""The width of sentences, in characters, on a wider terminal and in a pipe."""
 
 
 class Page:
@@ -37,10 +38,10 @@ class Page:
             highlight=False, color_system=colours, force_terminal=force, width=width, height=height
         )
         self.room = self.console.width if self.console.is_terminal else None
-        self.width = self.room or PIPE_WIDTH
+        self.width = min(self.room or MOST_WIDTH, MOST_WIDTH)
 
     def say(self, *sentences: str, style: str = "") -> None:
-        """Print sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
+        """Print sentences, in lines no longer than the terminal is wide, nor than a page."""
         if self.is_markdown:
             print("".join(f"{printable(words)}\n\n" for words in sentences), end="")
             return
@@ -48,7 +49,15 @@ class Page:
             for line in wrapped(printable(words), self.width):
                 self.line(line, style)
 
-    def line(self, words: str, style: str) -> None:
+    def heading(self, words: str) -> None:
+        """Print the heading of a step."""
+        if self.is_markdown:
+            self.say(f"## {words}")
+        else:
+            self.line("")
+            self.line(words, "bold")
+
+    def line(self, words: str, style: str = "") -> None:
         """Print a line as it is, however long."""
         from rich.text import Text
 

@@ -12,7 +12,6 @@ from ..numbers.digits import rounding_to_place, rounding_to_uncertainty, strip_z
 from ..solver.answers import Answers
 from ..solver.quantities import LIMITS_OF_ONE_MASS, MEASURED_NAMES, QUANTITIES, cited
 from ..solver.scene import with_unit
-from .files import printable
 from .page import Page
 from .text import aligned, cell
 
@@ -182,24 +181,12 @@ def print_budget(page: Page, answers: Answers, names: Sequence[str]) -> None:
     page.table(["Quantity", *answers.uncertain], [list(group) for _, group in by_group])
 
 
-LEAST_WIDTH, MOST_WIDTH = 40, 80
-"""The width of a derivation, in characters."""
-
-
 def print_steps(page: Page, answers: Answers, names: Sequence[str]) -> None:
-    """Print the derivation of these quantities, or of all: in the columns of a terminal, or as Markdown."""
+    """Print the derivation of these quantities, or of all."""
     from ..explain.derivation import explain
-    from .typeset import as_lines, as_markdown
+    from .typeset import print_explanation
 
-    given = inputs_with_effect(answers).values()
-    explanation = explain(answers, names)
-    if page.is_markdown:
-        for line in as_markdown(given, explanation):
-            print(printable(line))
-        return
-    width = max(LEAST_WIDTH, min(MOST_WIDTH, page.room or MOST_WIDTH))
-    for line, style in as_lines(given, explanation, width):
-        page.line(line, style)
+    print_explanation(page, inputs_with_effect(answers).values(), explain(answers, names))
 
 
 # The arc of contact

@@ -1,19 +1,20 @@
 """Set a derivation in type: plain text for a terminal, Markdown with LaTeX for a handout."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from functools import partial
 from itertools import groupby
 from operator import attrgetter
 from typing import Any
 
-from ..explain.derivation import Explanation, Paragraph
+from ..explain.derivation import Explanation
 from ..explain.equations import Equation
 from ..numbers.digits import format_number
 from ..numbers.formula import Formula, Symbol, factors
 from ..solver.quantities import QUANTITIES
 from ..solver.scene import INPUTS, MEASURED
+from .page import Page
 from .text import wrapped
 
 Written = tuple[str, int]
@@ -120,43 +121,32 @@ def in_math(words: str) -> str:
 # The page
 
 
-def as_lines(given: Iterable[str], explanation: Explanation, width: int) -> Iterator[tuple[str, str]]:
-    """Yield lines of at most that width, each with its style; a longer word has a line of its own.
+def print_explanation(page: Page, given: Iterable[str], explanation: Explanation) -> None:
+    """Print a derivation as text, or as Markdown with its mathematics in LaTeX between dollars.
 
     ``given`` has each input in words, as "m1 = 1 kg".
     """
     labels = [equation.label for paragraph in explanation.paragraphs for equation in paragraph.equations]
-    label_width = max(map(len, labels), default=0)
-    for words in (scene(given), *explanation.answer, explanation.reading):
-        style = "bold" if words in explanation.answer else ""
-        yield from ((line, style) for line in wrapped(in_text(words), width))
-    for title, paragraphs in steps(explanation):
-        yield from (("", ""), (title, "bold"))
+    label_width, in_words = max(map(len, labels), default=0), in_markdown if page.is_markdown else in_text
+    if page.is_markdown:
+        page.say("# Atwood's machine, step by step")
+    page.say(in_words(scene(given)))
+    page.say(*map(in_words, explanation.answer), style="bold")
+    page.say(in_words(explanation.reading))
+    steps = groupby(explanation.paragraphs, attrgetter("title"))
+    for number, (title, paragraphs) in enumerate(steps, 1):
+        page.heading(f"{number}. {title}")
         for _, sentences, equations in paragraphs:
-            lines = [line for words in sentences for line in wrapped(in_text(words), width)]
+            page.say(*map(in_words, sentences))
             for equation in equations:
-                lines += _equation_lines(equation, width, f"  {equation.label:<{label_width}} ")
-            yield from ((line, "") for line in lines)
-
-
-def as_markdown(given: Iterable[str], explanation: Explanation) -> Iterator[str]:
-    """Yield a page of Markdown, its mathematics in LaTeX between dollars."""
-    yield "# Atwood's machine, step by step"
-    for words in (scene(given), *explanation.answer, explanation.reading):
-        yield f"\n{in_markdown(words)}"
-    for title, paragraphs in steps(explanation):
-        yield f"\n## {title}"
-        for _, sentences, equations in paragraphs:
-            yield from (f"\n{in_markdown(words)}" for words in sentences)
-            for equation in equations:
-                label = rf" \qquad {equation.label}" if equation.label else ""  # not every reader knows \tag
-                yield f"\n$$\n{_aligned(equation)}{label}\n$$"
-
-
-def steps(explanation: Explanation) -> Iterator[tuple[str, Iterator[Paragraph]]]:
-    """Yield the steps of an explanation: each its number and title, and its paragraphs."""
-    for number, (title, paragraphs) in enumerate(groupby(explanation.paragraphs, attrgetter("title")), 1):
-        yield f"{number}. {title}", paragraphs
+                if page.is_markdown:
+                    label = (
+                        rf" \qquad {equation.label}" if equation.label else ""
+                    )  # not every reader knows \tag
+                    page.say(f"$$\n{_aligned(equation)}{label}\n$$")
+                    continue
+                for line in _equation_lines(equation, page.width, f"  {equation.label:<{label_width}} "):
+                    page.line(line)
 
 
 def scene(given: Iterable[str]) -> str:
