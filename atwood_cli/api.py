@@ -171,9 +171,9 @@ class Solution(Generic[T]):
         return f"<Solution {'; '.join([*filter(None, [self.regime]), *shown])}>"
 
     def _repr_html_(self) -> str:
-        from .output.text import in_html
+        from html import escape
 
-        return in_html(str(self))
+        return f"<pre>{escape(str(self))}</pre>"
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):

@@ -1,14 +1,11 @@
 """`atwood quantities`: the quantities that can be asked for by name."""
 
-import sys
 from operator import attrgetter
-from shutil import get_terminal_size
 from typing import Annotated
 
 from ..explain.given import VERSION
 from ..output.forms import Destination, Report, show
 from ..output.page import Page
-from ..output.text import say
 from ..reading.names import read_names
 from ..solver.quantities import QUANTITIES, REGIMES
 from .options import DONE, OUTPUT, argument, with_options
@@ -48,6 +45,4 @@ def quantities(target: Destination, names: Names = None) -> int:
             page.say(ON_FRICTION)
 
     show(Report(lambda: {"version": VERSION, "quantities": records}, lambda: records, print_page), target)
-    if sys.stdout.isatty() and not (names or any(target)) and get_terminal_size().lines < len(rows):
-        say("name those that you want to see, as atwood quantities mu_verge a; or add | less")
     return DONE

@@ -72,8 +72,6 @@ DOUBTFUL = {
     "Whether the string slips": "regime",
 }
 """The decisions that may be in doubt, and their attributes of `Decisions`."""
-MOST_NAMED = 3
-"""The most quantities that a sentence names."""
 
 
 def ends_nearby(answers: Answers) -> Iterator[tuple[str, str, Any]]:
@@ -125,12 +123,7 @@ def without_uncertainty(answers: Answers, names: Iterable[str]) -> list[str]:
                     shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(value)))
                     words += f" ({with_unit(shown, answers.unit_of(name))} at {other_place})"
                 groups.setdefault(f"at {place}, {pair[i].reason}", []).append(words)
-    sentences = []
-    for reason, group in groups.items():
-        others = len(group) - MOST_NAMED
-        more = f" and {others} more" if others > 0 else ""
-        sentences.append(f"No uncertainty of {', '.join(group[:MOST_NAMED])}{more}: {reason}.")
-    return sentences
+    return [f"No uncertainty of {', '.join(group)}: {reason}." for reason, group in groups.items()]
 
 
 def _at(answers: Answers, x: str, value: Fraction) -> str:

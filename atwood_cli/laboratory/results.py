@@ -119,9 +119,9 @@ class Fit(NamedTuple):
         return f"<Fit of {'; '.join([counted(len(self.runs), 'run'), *results])}>"
 
     def _repr_html_(self) -> str:
-        from ..output.text import in_html
+        from html import escape
 
-        return in_html(str(self))
+        return f"<pre>{escape(str(self))}</pre>"
 
     def __str__(self) -> str:
         lines = [

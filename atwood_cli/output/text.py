@@ -127,13 +127,6 @@ def cell(value: object) -> str:
     return "" if value is None else str(value)
 
 
-def in_html(words: str) -> str:
-    """Return a page of text as a notebook shows it."""
-    from html import escape
-
-    return f"<pre>{escape(words)}</pre>"
-
-
 def aligned(numbers: Iterable[str]) -> list[str]:
     """Return numbers with their decimal points below each other; words are left as they are."""
     numbers = list(numbers)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 from fractions import Fraction
-from functools import cache
 from math import inf
 from numbers import Rational, Real
 from typing import Any
@@ -38,7 +37,7 @@ def read_input(name: str, given: Given | None, signed: bool = False) -> Input:
     Raises SceneError.
     """
     if given is None or is_missing(given):
-        return _default(name)
+        return Input(Fraction(DEFAULTS[name]) if name in DEFAULTS else None)
     if isinstance(given, str):
         read = _read_text(name, given)
     elif isinstance(given, Angle) and name == "wrap":
@@ -47,12 +46,6 @@ def read_input(name: str, given: Given | None, signed: bool = False) -> Input:
         read = Input(_exact_number(name, given))
     _check_domain(name, given, read.number, signed)
     return read._replace(given=given)
-
-
-@cache
-def _default(name: str) -> Input:
-    """Return an input that is not given."""
-    return Input(Fraction(DEFAULTS[name]) if name in DEFAULTS else None)
 
 
 def read_exactly(name: str, given: Given | None) -> Input:

@@ -121,8 +121,6 @@ def read_name(
         raise SceneError(parameter, word, "has a unit, which only solve and sweep take; leave it out")
     if kind == "quantity" and word in MEASURED_NAMES and word not in INPUTS:
         raise SceneError(parameter, word, "follows from a measured motion, which only solve takes")
-    if word in INPUTS and not kind.startswith("input"):
-        raise SceneError(parameter, word, f"is an input, not {a_kind}{hint or known_names}")
     raise SceneError(parameter, word, f"is not {a_kind}{hint or nearest(word, known) or known_names}")
 
 

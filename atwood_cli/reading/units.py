@@ -65,8 +65,6 @@ MAX_DIGITS, MAX_EXPONENT = 1000, 500
 """The limits of a number, as it is typed and in SI units."""
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
-LONGEST_QUOTIENT = 30
-"""The most characters of a quotient that is shown as it was typed."""
 _LARGEST = 10**MAX_MAGNITUDE
 TOO_LONG = f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits"
 
@@ -87,10 +85,7 @@ STOPWATCH = re.compile(r"(?:(\d+):(?=[0-5]\d:))?(\d+):([0-5]\d(?:\.\d*)?)", re.A
 """A time in hours, minutes and seconds."""
 _ALIKE = str.maketrans("０１２３４５６７８９＋－．／（）％：−⁄", "0123456789+-./()%:-/")
 """Characters that mean those of ASCII. Superscripts do not, as 10² is not 102."""
-_VULGAR = dict(
-    zip("½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞", "1/2 1/3 2/3 1/4 3/4 1/5 2/5 3/5 4/5 1/6 5/6 1/8 3/8 5/8 7/8".split(), strict=True)
-)
-_MIXED = re.compile(rf"(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([{''.join(_VULGAR)}])(?! ?[\d.eE/(])", re.ASCII)
+_MIXED = re.compile(r"(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([½⅓⅔¼¾⅕-⅞])(?! ?[\d.eE/(])", re.ASCII)
 """A vulgar fraction, perhaps behind a whole number."""
 _PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
 _SYMBOLS = {symbol.translate(_PLAIN): symbol for symbols in UNITS.values() for symbol in symbols}
@@ -140,7 +135,9 @@ def in_ascii(text: str) -> str:
 
 
 def _as_quotient(mixed: re.Match[str]) -> str:
-    over, under = map(int, _VULGAR[mixed[2]].split("/"))
+    from unicodedata import normalize
+
+    over, under = map(int, normalize("NFKC", mixed[2]).split("\N{FRACTION SLASH}"))
     return f"{int(mixed[1] or 0) * under + over}/{under}"
 
 
@@ -219,7 +216,7 @@ def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> 
         raise NotANumber(NOT_A_NUMBER)
     typed, symbol = match.groups(default="")
     value, is_quotient = _quotient(typed), "/" in typed
-    quotient = typed if is_quotient and len(typed) <= LONGEST_QUOTIENT else ""
+    quotient = typed if is_quotient else ""
     if not symbol:
         return Input(value, quotient=quotient)
     if dimension is None:
