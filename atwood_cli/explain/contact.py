@@ -30,7 +30,7 @@ ZERO_DIGITS = 50
 
 CREEP = (
     "The tension is not unique while the string grips with friction to spare. Shown is that of a slightly"
-    " elastic string: friction is at its limit on the {angle}° of the arc next to the heavier mass, and 0"
+    " elastic string: friction is at its limit on the {angle}° of the arc next to the greater tension, and 0"
     " elsewhere."
 )
 WITHOUT_MU = "mu is not given: the forces shown are for the least mu that holds."

@@ -93,18 +93,13 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
 
 def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterator[str]:
     """Yield sentences on the friction along the arc, and on what is not drawn."""
-    if kind == "creep":
-        why = ", as on a slightly elastic string"
-        if answers["friction_force_max"] is not None:
-            greatest, least = (format_number(answers[f"friction_force_{edge}"]) for edge in ("max", "min"))
-            why = f". Its vector sum is the greatest that is possible, {greatest} N; the least is {least} N"
-        angle = format_number(answers["least_wrap"])
-        end = "greater tension" if answers.decided.is_driven else "heavier mass"
-        yield f"Drawn: friction at its limit on the {angle}° of the arc next to the {end}{why}."
-    elif kind:
+    if kind:
         yield say_profile(answers, kind)
         if force := answers["friction_force"]:
             yield f"The vector sum of friction is {format_number(force)} N."
+        elif answers["friction_force_max"]:
+            greatest, least = (format_number(answers[f"friction_force_{edge}"]) for edge in ("max", "min"))
+            yield f"Its vector sum is the greatest that is possible, {greatest} N; the least is {least} N."
     if wrap > 360:
         turns = _number(answers.settle(lambda m: answers.decided.scene.wrap.degrees(m.ar) / 360), answers)
         which = ", and the forces on the one at the heavier mass are drawn" if kind else ""
