@@ -2,7 +2,6 @@
 
 import inspect
 import os
-import shlex
 import sys
 from collections.abc import Callable, Mapping
 from itertools import chain
@@ -268,6 +267,8 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     if suffix and suffix not in forms:
         way = "; add --markdown for .md" if options.get("explain") and ".txt" in forms else ""
         if suffix in PANDOC and "markdown" in options:
+            import shlex
+
             md = shlex.quote(f"{os.path.splitext(file)[0]}.md")
             way = f"; write {md} by --markdown, then run pandoc {md} -o {shlex.quote(file)}"
         raise SceneError("output", file, f"must end in {' or '.join(forms)}{way}")

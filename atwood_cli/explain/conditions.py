@@ -24,7 +24,7 @@ from ..solver.quantities import NO_NEED, QUANTITIES, REGIMES, Undetermined
 from ..solver.scene import INPUTS, MEASURED, NOT_GIVEN, Angle, Input, SceneError, with_unit
 from .messages import ends_nearby, unmarked
 
-COMPARISON = re.compile("([^<>=]*)(<=|>=|==|<|>)([^<>=]*)")
+COMPARISON = "([^<>=]*)(<=|>=|==|<|>)([^<>=]*)"
 OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "<": operator.lt,
     "<=": operator.le,
@@ -52,7 +52,7 @@ def read_condition(typed: str) -> Condition:
     """Read a condition. Raises SceneError."""
     if (regime := re.sub(r"^\s*regime\s*==", "", typed).strip()) in REGIMES:
         return Condition(typed.strip(), regime)
-    if not (match := COMPARISON.fullmatch(typed)):
+    if not (match := re.fullmatch(COMPARISON, typed)):
         raise SceneError("expect", typed, f"must be {HOW_TO_EXPECT}")
     word, sign, number = map(str.strip, match.groups())
     name = read_name("expect", word, QUANTITIES, "quantity", NAMES_BY_SYMBOL)

@@ -4,8 +4,8 @@ import sys
 from collections.abc import Sequence
 from decimal import Decimal
 from itertools import groupby
+from typing import TYPE_CHECKING
 
-from ..explain.contact import Contact
 from ..explain.given import VERSION, inputs_with_effect, scene_record, terms_record
 from ..explain.messages import measured_quantities, notes, reasons, remarks, unmarked, verdict
 from ..numbers.digits import rounding_to_place, rounding_to_uncertainty, strip_zeros, with_uncertainty
@@ -14,6 +14,9 @@ from ..solver.quantities import LIMITS_OF_ONE_MASS, MEASURED_NAMES, QUANTITIES, 
 from ..solver.scene import with_unit
 from .page import Page
 from .text import aligned, cell
+
+if TYPE_CHECKING:
+    from ..explain.contact import Contact
 
 
 def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> dict[str, object]:
@@ -205,7 +208,7 @@ FORCES = {"friction": "friction", "normal": "normal force", "sum": "sum"}
 """The forces in the balance, in words."""
 
 
-def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
+def contact_record(answers: Answers, arc: "Contact") -> dict[str, object]:
     """Return the record of an arc for JSON."""
     return {
         "version": VERSION,
@@ -218,7 +221,7 @@ def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
     }
 
 
-def print_contact(page: Page, answers: Answers, arc: Contact, tables: bool) -> None:
+def print_contact(page: Page, answers: Answers, arc: "Contact", tables: bool) -> None:
     """Print the scene, the verdict, with ``tables`` the forces along the arc and their sum, and the notes."""
     _print_head(page, answers)
     if not tables:

@@ -11,11 +11,12 @@ from .units import Malformed, read_unit_of_result
 SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
 ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
 """The letters to type for those of symbols."""
+PLAIN = ASCII | {ord("\N{MICRO SIGN}"): "mu"} | dict.fromkeys(map(ord, " _-"))
 
 
 def _plain(symbol: str) -> str:
     """Return a symbol or a name without blanks and dashes, so that Fmin and F_min are the same as F min."""
-    return re.sub("[ _-]", "", symbol.replace("\N{MICRO SIGN}", "μ").translate(ASCII))
+    return symbol.translate(PLAIN)
 
 
 NAMES_BY_SYMBOL = {

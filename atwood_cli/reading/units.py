@@ -79,13 +79,13 @@ MULTIPLES = {
     "acceleration": (_MULTIPLE % "g", Fraction(STANDARD_GRAVITY), "m/s2"),
 }
 """The pattern of multiples of a constant, as 3pi/2, and its value in a unit, by dimension."""
-SHARE = re.compile(rf"({_DECIMAL} ?{_UNIT}) ?/ ?({_DECIMAL})", re.ASCII)
+SHARE = rf"({_DECIMAL} ?{_UNIT}) ?/ ?({_DECIMAL})"
 """A number with a unit, divided, as a diameter of 12cm/2."""
-STOPWATCH = re.compile(r"(?:(\d+):(?=[0-5]\d:))?(\d+):([0-5]\d(?:\.\d*)?)", re.ASCII)
+STOPWATCH = r"(?:(\d+):(?=[0-5]\d:))?(\d+):([0-5]\d(?:\.\d*)?)"
 """A time in hours, minutes and seconds."""
 _ALIKE = str.maketrans("０１２３４５６７８９＋－．／（）％：−⁄", "0123456789+-./()%:-/")
 """Characters that mean those of ASCII. Superscripts do not, as 10² is not 102."""
-_MIXED = re.compile(r"(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([½⅓⅔¼¾⅕-⅞])(?! ?[\d.eE/(])", re.ASCII)
+_MIXED = r"(?a)(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([½⅓⅔¼¾⅕-⅞])(?! ?[\d.eE/(])"
 """A vulgar fraction, perhaps behind a whole number."""
 _PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
 _SYMBOLS = {symbol.translate(_PLAIN): symbol for symbols in UNITS.values() for symbol in symbols}
@@ -131,7 +131,7 @@ class NotANumber(Malformed):
 def in_ascii(text: str) -> str:
     """Return a number without needless blanks and in the characters of ASCII: −1½ is -3/2."""
     text = without_blanks(text).translate(_ALIKE)
-    return text if text.isascii() else _MIXED.sub(_as_quotient, text)
+    return text if text.isascii() else re.sub(_MIXED, _as_quotient, text)
 
 
 def _as_quotient(mixed: re.Match[str]) -> str:
@@ -196,10 +196,10 @@ def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> 
         if MULTIPLE_OF_G in others:
             return Input(limited(number), unit=Unit(MULTIPLE_OF_G.unit, terms=MULTIPLE_OF_G))
         return Input(limited(number * constant), unit=Unit(unit_of_constant))
-    if dimension == "time" and (clock := STOPWATCH.fullmatch(text)):
+    if dimension == "time" and (clock := re.fullmatch(STOPWATCH, text, re.ASCII)):
         hours, minutes, seconds = map(_decimal, clock.groups(default="0"))
         return Input(limited((hours * 60 + minutes) * 60 + seconds), unit=Unit("s"))
-    if len(summands := re.split(r"(?<=[^eE ]) ?\+ ?", text)) > 1:
+    if "+" in text and len(summands := re.split(r"(?<=[^eE ]) ?\+ ?", text)) > 1:
         terms = [_read_exactly(one, dimension, others) for one in summands]
         own = [
             (x.unit.symbol == "rad", bool(x.unit.symbol or dimension == "angle"), x.unit.terms) for x in terms
@@ -208,7 +208,7 @@ def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> 
             raise Malformed("adds numbers of different units; write the same unit at each")
         total = limited(sum((x.number for x in terms), Fraction(0)))
         return terms[0]._replace(number=total, quotient="")
-    if share := SHARE.fullmatch(text):
+    if "/" in text and (share := re.fullmatch(SHARE, text, re.ASCII)):
         read = _read_exactly(share[1], dimension, others)
         return read._replace(number=limited(read.number * _quotient(f"1/{share[2]}")))
     match = NUMBER.fullmatch(text)
@@ -226,9 +226,9 @@ def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> 
     if is_quotient or symbol_of(symbol) == "rpm":
         limited(value)
     else:
-        digits = re.sub("[^0-9]", "", as_typed(value, inf).partition("e")[0]).lstrip("0")
+        in_si = as_typed(value, inf).partition("e")[0].lstrip("-0.")
         exponent = _power(typed) + to_digits(1, ROUND_FLOOR)(unit.size).adjusted()
-        _check_size(len(digits), exponent, ", its unit included")
+        _check_size(in_si, exponent, ", its unit included")
     return Input(value, unit=unit, quotient=quotient)
 
 
@@ -244,8 +244,8 @@ def _quotient(text: str) -> Fraction:
 
 def _decimal(text: str) -> Fraction:
     """Return the value of a decimal. Raises Malformed."""
-    mantissa = re.split("[eE]", text)[0]
-    _check_size(len(re.sub("[^0-9]", "", mantissa)), _power(text))
+    mantissa = text.lower().partition("e")[0]
+    _check_size(mantissa, _power(text))
     return Fraction(f"{mantissa}e{_power(text)}")
 
 
@@ -256,9 +256,9 @@ def _power(decimal: str) -> int:
     return -power if exponent.startswith("-") else power
 
 
-def _check_size(digits: int, exponent: int, how: str = "") -> None:
+def _check_size(mantissa: str, exponent: int, how: str = "") -> None:
     """Raise Malformed if a decimal has too many digits or too large an exponent to be solved quickly."""
-    if digits > MAX_DIGITS:
+    if (digits := sum(map(str.isdigit, mantissa))) > MAX_DIGITS:
         raise Malformed(f"has {digits} digits{how}; at most {MAX_DIGITS} are taken")
     if abs(exponent) > MAX_EXPONENT:
         raise Malformed(f"has an exponent beyond {MAX_EXPONENT} in magnitude{how}")

@@ -12,8 +12,6 @@ profiles differ in s:
 - least: the s with the least net friction, the root of `physics.least_friction_slope`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Generic, Literal, NamedTuple
@@ -44,7 +42,7 @@ class Arc(NamedTuple, Generic[N]):
     end: Knot[N]
 
 
-def arcs(ar: Arithmetic[N], pieces: Sequence[tuple[N, N]], light: N, end: Knot[N]) -> list[Arc[N]]:
+def arcs(ar: "Arithmetic[N]", pieces: Sequence[tuple[N, N]], light: N, end: Knot[N]) -> list[Arc[N]]:
     """Return pieces, each of a μ and a length (rad), from the light end with its tension (N) to ``end``."""
     zero = ar.number(0)
     knots = [Knot(zero, ar.number(1), zero, light)]
@@ -56,7 +54,7 @@ def arcs(ar: Arithmetic[N], pieces: Sequence[tuple[N, N]], light: N, end: Knot[N
     return [Arc(mu, *both) for (mu, _), both in zip(pieces, ends, strict=True)]
 
 
-def least_lead(ar: Arithmetic[N], mu: N, limiting: N, stuck: N, light: N, end: Knot[N]) -> N:
+def least_lead(ar: "Arithmetic[N]", mu: N, limiting: N, stuck: N, light: N, end: Knot[N]) -> N:
     """Return the lead s (rad) of the profile with the least net friction; needs φ <= π."""
     _, half_sine = ar.cos_sin(stuck / 2)
     chord = 2 * light * half_sine
@@ -83,7 +81,7 @@ def force(pieces: Sequence[Arc[N]], law: Callable[[N, N, N], tuple[N, N]]) -> tu
     return x, y
 
 
-def torque_per_radius(ar: Arithmetic[N], pieces: Sequence[Arc[N]]) -> N:
+def torque_per_radius(ar: "Arithmetic[N]", pieces: Sequence[Arc[N]]) -> N:
     """Return ∫ dT/dθ dθ (N), the torque of friction on the pulley over its radius, arc by arc; (23)."""
     total = ar.number(0)
     for arc in pieces:
@@ -91,6 +89,6 @@ def torque_per_radius(ar: Arithmetic[N], pieces: Sequence[Arc[N]]) -> N:
     return total
 
 
-def tension(ar: Arithmetic[N], arc: Arc[N], angle: N) -> N:
+def tension(ar: "Arithmetic[N]", arc: Arc[N], angle: N) -> N:
     """Return T (N) at an angle within the arc; also nR, the normal force per radian (13)."""
     return arc.start.tension * (ar.expm1(arc.mu * (angle - arc.start.angle)) + 1)

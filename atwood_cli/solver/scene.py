@@ -1,7 +1,5 @@
 """A scene: what is given, exact and valid."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
@@ -9,12 +7,12 @@ from math import inf
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn, cast
 
 from ..numbers.digits import as_typed, to_double
-from ..numbers.rational import EXACT
+from ..numbers.rational import EXACT, N
 from ..numbers.text import in_quotes, shortened
 from . import physics
 
 if TYPE_CHECKING:
-    from ..numbers.rational import Arithmetic, N
+    from ..numbers.rational import Arithmetic
 
 STANDARD_GRAVITY = "9.80665"
 """m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
@@ -29,18 +27,18 @@ class Angle(NamedTuple):
     number: Any
     unit: Literal["°", "rad"] = "°"
 
-    def radians(self, ar: Arithmetic[N]) -> N:
+    def radians(self, ar: "Arithmetic[N]") -> N:
         """Return the angle in radians."""
         if self.unit == "rad":
             return ar.number(self.number)
         return ar.pi * ar.number(self.number / 180)
 
-    def degrees(self, ar: Arithmetic[N], share: Any = 1) -> N:
+    def degrees(self, ar: "Arithmetic[N]", share: Any = 1) -> N:
         """Return a share of the angle in degrees; a share of 0 is exactly 0."""
         number = ar.number(share * self.number)
         return number * 180 / ar.pi if self.unit == "rad" and share else number
 
-    def cos_sin(self, ar: Arithmetic[N], parts: int = 1) -> tuple[N, N]:
+    def cos_sin(self, ar: "Arithmetic[N]", parts: int = 1) -> tuple[N, N]:
         """Return cosine and sine of one of equal parts of the angle; exact at multiples of 90°."""
         if self.unit == "rad":
             return ar.cos_sin(ar.number(self.number) / parts)
@@ -334,7 +332,7 @@ class Scene(NamedTuple):
     terms: tuple[tuple[str, Terms], ...] = ()
 
     @classmethod
-    def of(cls, inputs: Mapping[str, Input], finds: str | None = None, may_lack: bool = False) -> Scene:
+    def of(cls, inputs: Mapping[str, Input], finds: str | None = None, may_lack: bool = False) -> "Scene":
         """Make a scene of inputs and measurements that were read one by one; a motion may find a mass.
 
         It ``may_lack`` masses beside mu, as some limits hold without them.
@@ -411,7 +409,7 @@ class Scene(NamedTuple):
         terms = dict(self.terms).get(x)
         return terms.number(own, getattr(self, terms.by)) if terms else own
 
-    def with_number(self, x: str, number: Any) -> Scene:
+    def with_number(self, x: str, number: Any) -> "Scene":
         """Return the scene with another number for an input, or for what was measured, in the same unit.
 
         What was given in other terms is converted anew, as that number may convert it.

@@ -45,7 +45,7 @@ class SweepPage:
             for row in rows:
                 self.assumed = [ASSUMED] if row.mu_assumed else self.assumed
                 yield row
-                had = (name for name, value in row.values.items() if cell(value))
+                had = [name for name in self.tally.missing if cell(row.values[name])]
                 self.tally.count(1, had, dict.fromkeys(row.reasons.items(), 1))
                 if row.failures:
                     self.tally.count_failures(f"at {self.sweep.in_words(row.at)}", row.failures)
