@@ -103,7 +103,7 @@ class Decisions:
             return self.light
         return self.scene.m2 if self.heavier_side >= 0 else self.scene.m1
 
-    @property
+    @lazy
     def one_mass_is_0(self) -> bool:
         """Whether one mass is 0; or below, as a mass that is found with an uncertain acceleration may be."""
         return not self.lacking and is_number(self.light) and self.light <= 0
@@ -143,7 +143,7 @@ class Decisions:
         """The axle's friction as a force at the rim, f (N)."""
         return ZERO if self.scene.axle is None else self.scene.axle
 
-    @property
+    @lazy
     def has_axle_friction(self) -> bool:
         """Whether the axle has friction."""
         return not is_zero(self.axle_friction)
@@ -160,7 +160,7 @@ class Decisions:
             return False
         return self.has_axle_friction and self.heavier_side != 0 and not self.moves_axle("difference")
 
-    @property
+    @lazy
     def difference(self) -> Fraction:
         """The heavier mass less the lighter one (kg)."""
         return self.heavy - self.light
@@ -170,22 +170,22 @@ class Decisions:
         mass: Fraction = getattr(self, name)
         return mass * self.scene.g > self.axle_friction
 
-    @property
+    @lazy
     def pulley_at_rest(self) -> bool:
         """Whether the pulley is at rest, as it is locked or its axle holds it."""
         return self.locked or self.axle_holds
 
-    @property
+    @lazy
     def pulley_known(self) -> bool:
         """Whether the motion of a string that grips is known: measured, or the pulley is known or rests."""
         return self.is_driven or self.pulley_at_rest or self.rim_mass is not None
 
-    @property
+    @lazy
     def pulley_is_ideal(self) -> bool:
         """Whether the pulley has neither mass nor friction in its axle."""
         return is_zero(self.rim_mass) and not self.has_axle_friction and not self.is_driven
 
-    @property
+    @lazy
     def tensions_equal(self) -> bool:
         """Whether a string that grips needs no friction."""
         return self.heavier_side == 0 or self.pulley_is_ideal
@@ -215,7 +215,7 @@ class Decisions:
         limit = self.scene.mu if self.limit_is_static else self.scene.mu_k
         return ZERO if limit is None else limit
 
-    @property
+    @lazy
     def assumptions(self) -> dict[str, str]:
         """The quantities that depend on what is only assumed, and the assumption."""
         if self.scene.mu is not None:
@@ -230,7 +230,7 @@ class Decisions:
         regime = {"regime": REGIME_ASSUMED} if self.mu_assumed else {}
         return regime | ({"mu_verge": MASSLESS_ASSUMED} if is_massless and moves else {})
 
-    @property
+    @lazy
     def mu_assumed(self) -> bool:
         """Whether friction is that with the least coefficient that holds the string, as mu is not given."""
         if self.scene.mu is not None or self.one_mass_is_0 or self.tensions_equal:
@@ -242,12 +242,12 @@ class Decisions:
         """Whether friction at its limit is static (mu) or kinetic (mu_k)."""
         return not self.slide_measured and (self.scene.mu_k is None or self.regime == "verge")
 
-    @property
+    @lazy
     def slide_measured(self) -> bool:
         """Whether kinetic friction follows from a measured acceleration."""
         return self.motion.finds == "mu_k"
 
-    @property
+    @lazy
     def slides_by_mu_k(self) -> bool:
         """Whether the string slides with the mu_k that is given."""
         return self.regime == "slip" and self.scene.mu_k is not None and not self.slide_measured
@@ -263,17 +263,17 @@ class Decisions:
         given = (getattr(self.motion, name) for name in FALL)
         return tuple(-x if x is not None and is_number(x) and x < 0 else x for x in given)
 
-    @property
+    @lazy
     def slows_down(self) -> bool:
         """Whether the heavier mass descends ever slower, as the measured acceleration says."""
         return self.motion.finds == "axle" and self.measured_acceleration < 0
 
-    @property
+    @lazy
     def at_limit(self) -> bool:
         """Whether friction at its limit decides the tensions; on a driven pulley the motion does."""
         return self.regime != "no-slip" and not self.is_driven
 
-    @property
+    @lazy
     def frictionless(self) -> bool:
         """Whether the string moves, or rests, without friction."""
         if self.slide_measured:
@@ -296,14 +296,14 @@ class Decisions:
         """Whether the string slips under the greatest difference that the axle holds."""
         return self.has_axle_friction and self.slips_at("heaviest_at_rest")
 
-    @property
+    @lazy
     def pulley_at_rest_until_it_slips(self) -> bool:
         """Whether the pulley rests, or is driven, when the lighter mass is the least that holds."""
         if self.slips_by_tensions or not self.has_axle_friction:
             return self.slips_by_tensions
         return not self.moves_axle("heavy") or self.slips_at("lightest_at_rest")
 
-    @property
+    @lazy
     def slips_at_rest(self) -> bool:
         """Whether the critical heavier mass makes the string slip on a pulley that is at rest, or driven."""
         return self.slips_by_tensions or self.slips_once_it_moves

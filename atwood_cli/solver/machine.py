@@ -77,13 +77,13 @@ class Machine(Generic[N]):
             raise Undetermined(otherwise)
         return self.ar.number(value)
 
-    @property
+    @lazy
     def mu(self) -> N:
         """Coefficient of static friction; not given if one mass is 0."""
         reason = quantities.FIXED_END if self.decided.one_mass_is_0 else quantities.NEEDS_MU
         return self._given(self.scene.mu, reason)
 
-    @property
+    @lazy
     def c(self) -> N:
         """The pulley's inertia as a mass at its rim (kg)."""
         return self._given(self.decided.rim_mass, quantities.NEEDS_M)
@@ -122,6 +122,8 @@ class Machine(Generic[N]):
         """T_h/T_l - 1 on the verge and in slip, as friction is at its limit."""
         if self.decided.slide_measured:
             return self.decided.slide_ratio_minus_1(self.ar)
+        if self.decided.limit_is_static:
+            return self.k_minus_1
         mu = self.decided.limiting_mu
         return self._capstan_ratio_minus_1(mu, self.ar.number(mu))
 
@@ -292,11 +294,11 @@ class Machine(Generic[N]):
         """Tension on the heavier mass (N)."""
         return self.light_tension + self.difference
 
-    @property
+    @lazy
     def tension_1(self) -> N:
         return self.light_tension if self.decided.heavier_side >= 0 else self.heavy_tension
 
-    @property
+    @lazy
     def tension_2(self) -> N:
         return self.heavy_tension if self.decided.heavier_side >= 0 else self.light_tension
 

@@ -89,12 +89,13 @@ class Range(NamedTuple):
     @property
     def finite(self) -> list[Fraction]:
         """Return the finite values, in ascending order."""
-        return sorted(Fraction(point.value) for point in self.points if point != LOCKED)
+        return sorted(x.value for x in self.points if isinstance(x.value, Fraction))
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
         """Return the least and the greatest finite value."""
-        return self.finite[0], self.finite[-1]
+        finite = self.finite
+        return finite[0], finite[-1]
 
     def at(self, value: Fraction | float, scene: Scene) -> Scene:
         """Return the scene at a value of the range."""
