@@ -16,7 +16,6 @@ import pytest
 from atwood_cli import solve
 from atwood_cli.output import figure
 from atwood_cli.output.forms import Picture
-from atwood_cli.solver.quantities import NAMES
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Measured
 from atwood_cli.tradeoff.tradeoff_page import GREATEST, LEAST
 from atwood_cli.tradeoff.tradeoff_page import save as save_tradeoff
@@ -67,7 +66,7 @@ def drawn(line: str, table: str = "") -> Any:
 
 
 @pytest.mark.parametrize(("table", "line"), LINES)
-def test_all_of_a_picture_can_be_read_and_is_the_pages(table: str, line: str) -> None:
+def test_all_of_a_picture_can_be_read(table: str, line: str) -> None:
     """No words lie over others or run off, and titles are no smaller than ticks."""
     page = drawn(" ".join(shlex.split(line)), table)
     assert misplaced(page) == []
@@ -81,8 +80,6 @@ def test_all_of_a_picture_can_be_read_and_is_the_pages(table: str, line: str) ->
     assert [*chain(*map(crossed, page.axes))] == []
     if "--symbols" in line:
         assert not re.search(r"\d", re.split("acceleration a|Friction is|Drawn", said)[0]), said
-    elif line.startswith(("solve", "contact")) and "1.123" not in line:
-        check_values(line, said)
 
 
 def crossed(axes: Any) -> list[str]:
@@ -99,34 +96,6 @@ def crossed(axes: Any) -> list[str]:
     drawn_on = np.concatenate(points)
     boxes = [(text.get_text(), text.get_window_extent()) for text in axes.texts if text.get_text()]
     return [text for text, box in boxes if ((drawn_on > box.min) & (drawn_on < box.max)).all(axis=1).any()]
-
-
-NUMBER = r"(\S+(?: × 10\S+)?)"
-VALUES = {
-    rf"T₁ = {NUMBER} N": ["tension_1"],
-    rf"T₂ = {NUMBER} N": ["tension_2"],
-    rf"\ba = {NUMBER} m/s²": ["acceleration"],
-    rf"vector sum of friction is {NUMBER} N": ["friction_force"],
-    rf"greatest that is possible, {NUMBER} N": ["friction_force_max"],
-    rf"the least is {NUMBER} N": ["friction_force_min"],
-}
-
-
-def check_values(line: str, said: str) -> None:
-    """Hold each value in a picture to the table: it had one friction force where the page has bounds."""
-    words = shlex.split(re.sub(r" --(bare|csv|only \S+|points \d+|digits \d+)", "", line))
-    digits = min([*re.findall(r"--digits (\d+)", line), "6"], key=int)
-    ran = called(["solve", *words[1:], "--digits", digits, "--only", ",".join(NAMES), "--csv"])
-    (values,) = csv.DictReader(ran.out.splitlines())
-    found = 0
-    for pattern, names in VALUES.items():
-        for match in re.finditer(pattern, re.sub(r", a = \S+ ±", "", said)):
-            for name, shown in zip(names, match.groups(), strict=True):
-                mantissa, *power = shown.replace("−", "-").split(" × 10")
-                exponent = "".join(power).translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")) or "0"
-                assert float(f"{mantissa}e{exponent}") == abs(float(values[name])), (name, shown)
-                found += 1
-    assert found
 
 
 # The machine
