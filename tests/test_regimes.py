@@ -17,7 +17,7 @@ from atwood_cli.sweep.ranges import read_sweep
 
 from .conftest import examples
 from .tools import oracle
-from .tools.scenes import G, with_friction
+from .tools.scenes import G, any_scene
 
 positive = st.decimals(Decimal("0.01"), Decimal(100), places=4, allow_nan=False)
 
@@ -86,8 +86,8 @@ NOT_BESIDE = {"inertia": ["I"], "I": ["M", "inertia"], "M": ["I"]}
 @examples(400)
 @given(st.integers(0), st.sampled_from(sorted(RANGES)), st.sampled_from(["", ":log"]))
 def test_what_is_said_of_any_parameter_is_so(seed: int, name: str, log_: str) -> None:
-    words = {"mu": "0.2", "R": "0.3"} | with_friction(Random(seed))
-    for other in NOT_BESIDE.get(name, []):
+    words = {"mu": "0.2", "R": "0.3"} | any_scene(Random(seed), "ordinary")
+    for other in ["mu_k", *NOT_BESIDE.get(name, [])]:
         words.pop(other, None)
     unit = {"m1": "lb", "M": "oz", "R": "in", "wrap": "turn"}.get(name, "")
     if "Nm" in words.get(name, ""):

@@ -125,13 +125,13 @@ def _text(rng: Random, x: float) -> str:
 
 def ordinary(rng: Random) -> Given:
     m1 = _log_uniform(rng, -2, 2)
-    m2 = m1 * (1 + _log_uniform(rng, -2, 2))
+    m2 = m1 * (1 + rng.choice([0, *[_log_uniform(rng, -2, 2)] * 15]))
     scene = {"m1": _text(rng, m1), "m2": _text(rng, m2)}
     given = rng.choice(["", "M", "mu", "M mu", "M mu", "M mu mu_k"])
     if "M" in given:
-        scene["M"] = rng.choice([_text(rng, _log_uniform(rng, -2, 3))] * 9 + ["inf"])
+        scene["M"] = rng.choice(["0", "inf", *[_text(rng, _log_uniform(rng, -2, 3))] * 13])
     if "mu" in given:
-        mu = _log_uniform(rng, -2, 0.3)
+        mu = rng.choice([0.0, *[_log_uniform(rng, -2, 0.3)] * 14])
         scene["mu"] = repr(mu)
         if "mu_k" in given:
             scene["mu_k"] = repr(mu * rng.random())
@@ -210,7 +210,7 @@ def _vary(rng: Random, scene: Given) -> Given:
     if rng.random() < 0.2:
         scene.setdefault("g", rng.choice(["moon", "9.81", "1.6e-300"]))
     if rng.random() < 0.2:
-        if "R" in scene and scene.get("M") != "inf" and rng.random() < 0.5:
+        if "R" in scene and scene.get("M") not in ("0", "inf") and rng.random() < 0.5:
             scene["I"] = repr(_log_uniform(rng, -4, 3))
             if rng.random() < 0.5:
                 scene.pop("M", None)
@@ -348,40 +348,10 @@ def with_axle(rng: Random, given: Given) -> Given:
     return given | {"axle": f"{text} N" if rng.random() < 0.8 or "R" not in given else f"{text} Nm"}
 
 
-def with_friction(rng: Random, size: float = 1) -> Given:
-    """A scene of masses of about that size in which friction decides, mostly, in all ways there are."""
-    m1 = size * _log_uniform(rng, -2, 2)
-    m2 = m1 * rng.choice(
-        [1, 1 + _log_uniform(rng, -6, -1), _log_uniform(rng, 0, 3), _log_uniform(rng, -2, 0)]
-    )
-    words = {"m1": f"{m1:.4g}", "m2": f"{m2:.4g}"}
-    if rng.random() < 0.5:
-        words["g"] = f"{rng.uniform(1, 20):.3g}"
-    if rng.random() < 0.4:
-        words["wrap"] = rng.choice(["90", "540", f"{rng.uniform(10, 800):.3g}"])
-    if rng.random() < 0.4:
-        words["R"] = f"{_log_uniform(rng, -2, 1):.3g}"
-    if rng.random() < 0.65:
-        unit = "Nm" if "R" in words and rng.random() < 0.3 else ""
-        words["axle"] = f"{10 * abs(m2 - m1) * _log_uniform(rng, -2, 0.3) + size * 1e-3:.3g}{unit}"
-    if rng.random() < 0.65:
-        words["M"] = rng.choice(["0", "inf", *[f"{m1 * _log_uniform(rng, -3, 3):.3g}"] * 5])
-    if "R" in words and words.get("M") not in ("0", "inf") and rng.random() < 0.3:
-        words["I"] = f"{m1 * _log_uniform(rng, -3, 1):.3g}"
-    elif rng.random() < 0.2:
-        words["inertia"] = rng.choice(["hoop", "1.2345678", "1.00000001"])
-    if rng.random() < 0.75:
-        words["mu"] = rng.choice(["0", *[f"{_log_uniform(rng, -3, 0.2):.3g}"] * 5, "1e9"])
-    return words
-
-
-def of_all_kinds(count: int, seed: int = 2026) -> Iterator[Given]:
-    """Scenes as people have them, some with a free end or kinetic friction."""
-    rng = Random(f"all kinds {seed}")
-    for _ in range(count):
-        scene = with_friction(rng)
-        more = {"mu_k": repr(float(scene["mu"]) * rng.random())} if "mu" in scene else {"m2": "0"}
-        yield scene | more if rng.random() < 0.3 else scene
+def any_scene(rng: Random, *families: str) -> Given:
+    """A scene of any family, or of these, on an axle or not."""
+    usual = families or (*FAMILIES, *["ordinary"] * 5)
+    return next(scenes(rng.choice(usual) + rng.choice(["", ON_AN_AXLE]), 1, rng.randrange(10**9)))
 
 
 # Dangers of numbers, each by its name: rows of doubles of few patterns, so that columns solve them together
