@@ -12,7 +12,6 @@ from functools import partial
 from math import inf, sqrt
 from pathlib import Path
 from random import Random
-from time import process_time
 from typing import Any, get_args
 
 import numpy as np
@@ -544,18 +543,3 @@ def test_nothing_is_cut_from_the_picture(tmp_path: Path, table: str, more: str) 
     assert [len(one.get_xdata()) for one in hollow] == [int("--without" in more)]
     assert pages[0].get_supxlabel().endswith("Hollow points are left out.") == ("--without" in more)
     assert (pages[0].get_suptitle() == "") == ("--bare" in more)
-
-
-@pytest.mark.parametrize(("rows", "repeats"), [(800, 1), (12, 200)])
-def test_time_grows_as_the_rows_do(rows: int, repeats: int) -> None:
-    """20,000 rows took 41 s, as the square of their number; a large part were said to be odd."""
-    random, seconds = np.random.default_rng(20_000), []
-    for size in (1, 2):
-        made = drawn(Design(size * rows, repeats, 0.02, "vary"), random)
-        blunders = random.choice([0] * 9 + [1], (size * rows, 1))
-        cells = np.column_stack([made.l, made.h, made.values + blunders]).round(5)
-        text = table_of(cells.tolist(), ",".join(["m1,m2", *(f"time {k}" for k in range(repeats))]))
-        start = process_time()
-        assert fit(text, "--drop 1.1").status == 0
-        seconds.append(process_time() - start)
-    assert seconds[1] < 3 * seconds[0] + 0.2
