@@ -98,6 +98,8 @@ def main_quantities(answers: Answers) -> list[str]:
 
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red", None: "yellow"}
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
+WHOSE = {"kinetic_energy": " (masses and pulley)"}
+"""What is easily taken for that of the load alone."""
 
 
 def print_table(
@@ -110,8 +112,9 @@ def print_table(
         names = [name for name in answers.names[1:] if only is True or name in only]
     measured = measured_quantities(answers)
     groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *measured)])
-    stated = [quantity_in_words(answers, name) for name in measured if cell(answers[name])]
-    _print_head(page, answers, f"Found: {', '.join(stated)}." if stated else "")
+    found = [name for name in measured if cell(answers[name])]
+    stated = ", ".join(quantity_in_words(answers, name) + WHOSE.get(name, "") for name in found)
+    _print_head(page, answers, f"Found: {stated}." if stated else "")
     if groups:
         page.table(COLUMNS, groups)
     lacking = dict.fromkeys([*names, *measured])
