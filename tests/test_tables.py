@@ -386,6 +386,22 @@ def test_nothing_is_left_out_in_silence(read: Any) -> None:
     assert not any("is the mean" in doubt for doubt in read(table.replace("2.25", "2.24")).doubts)
 
 
+@pytest.mark.parametrize(
+    ("command", "table", "cells"),
+    [
+        ("fit --only rim_mass", "m1 (g),m2 (g),a\n150,165,40 cm/s2\n150,175,0.6\n0,175,3\n", ["a without a unit are read in m/s²"]),
+        ("fit --only rim_mass", "m1,m2 (g),a\n0,165,2\n0,175,2.1\n30 g,185 g,1.9\n", []),
+        ("batch --only a", "m1,m2,M,wrap\n150 g,165 g,inf,180\n150,165,,270\n20 N,0,,180\n", ["m1 without a unit are read in kg", "m2 without a unit are read in kg"]),
+        ("batch --only a", "m1,m2 (g),g,inertia\n150 g,165,moon,hoop\n0,165 g,9.8,0.5\n", []),
+    ],
+)  # fmt: skip
+def test_a_unit_in_some_cells_alone_is_not_passed_over(command: str, table: str, cells: list[str]) -> None:
+    """Grams in the first row were followed by kilograms without a word. 0 needs no unit, and a word is none."""
+    words = command.split()
+    said = called([words[0], "-", *words[1:]], table.encode()).err
+    assert re.findall("ells of (.*)\\.", said) == cells
+
+
 MEANS_OF_REPEATS = "150,165,1.86|150,165,1.91|150,165,1.885|155,185,1.38|155,185,1.34|155,185,1.36|160,200,1.17|160,200,1.22|160,200,1.195"
 MEAN_OF_RUNS = "150,165,1.71,1.73|150,175,1.322,1.301|150,190,1.071,1.066|150,185,1.3677,1.3657"
 MARKS = "150,165,.53|150,165,.92|150,190,.35|150,190,.60"

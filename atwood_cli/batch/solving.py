@@ -22,7 +22,7 @@ from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import REGIMES, STANDARD, TABLE_NAMES
 from ..solver.scene import COLUMNS, INPUTS, MASSES, Input, Scene, SceneError, Unit
-from ..tables.cells import EMPTY, has_unit, read_cell
+from ..tables.cells import BARE, EMPTY, has_unit, read_cell
 from ..tables.headings import (
     LONGEST_HEADING,
     MASS_NAMES,
@@ -40,6 +40,7 @@ from ..tables.headings import (
     unit_within,
 )
 from ..tables.places import asked
+from ..tables.records import LIKE_NUMBER
 from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable
 
@@ -164,6 +165,7 @@ def _meant(column: str) -> str:
 
 LABEL = "label"
 BEYOND, LIKE, UNLIKE = "beyond the doubles", "like radians", "unlike radians"
+IN_UNITS = "in units: "
 
 
 @dataclass
@@ -171,7 +173,7 @@ class TableTally(Tally):
     """The counts of the rows of a table."""
 
     counts: Counter[str] = field(default_factory=Counter)
-    """Of regimes, errors, values and wraps, and of the masses in kg beside a weight."""
+    """Of regimes, errors, values and wraps, and of numbers without a unit, and with one."""
     first_error: str = ""
 
     def add(
@@ -212,8 +214,8 @@ class TableTally(Tally):
             most = f"all wraps are less than {LIKE_RADIANS[1]}°"
             lines.append(f"{most}; if they are in radians or turns, say so, as in wrap (rad).")
         lines += [PULL] if self.counts[PULL] else []
-        bare = (x for x in MASSES if self.counts[x])
-        lines += [f"{x} is in kg; for a weight give its unit, as {x} (N)." for x in bare]
+        bare = (x for x in INPUTS if self.counts[x] and self.counts[IN_UNITS + x])
+        lines += [BARE.format(x, INPUTS[x].unit) for x in bare]
         lines += [f"first error, in {self.first_error}"] if errors else []
         expected = " and ".join(condition.typed for condition in self.expected)
         if expected and (errors or not self.rows):
@@ -269,7 +271,7 @@ def solve_cells(
     if wanted.digits:
         to_digits = f"{{:.{wanted.digits - 1}e}}".format
         results = results.with_columns(numbers.map_elements(lambda x: float(to_digits(x)), pl.Float64))
-    hints = _hints(cells, columns, exact, given.get("wrap"), len(singles))
+    hints = _hints(cells, doubles, columns, exact, given.get("wrap"), sorted(singles))
     tally.add(results, reasons, failures, labels, {BEYOND: beyond, **hints})
     if wanted.conditions:
         fails = pl.int_range(pl.len()).is_in([x for x in failures if failures[x]])
@@ -308,17 +310,27 @@ def _judge(
 
 
 def _hints(
-    cells: "pl.DataFrame", columns: ReadColumns, shared: Mapping[str, Input], wraps: Any, singles: int
+    cells: "pl.DataFrame",
+    doubles: "pl.DataFrame",
+    columns: ReadColumns,
+    shared: Mapping[str, Input],
+    wraps: Any,
+    singles: Sequence[int],
 ) -> dict[str, int]:
-    """Count wraps of plain degrees that are like radians or not, and plain masses beside a weight."""
+    """Count wraps of plain degrees that are like radians or not, and numbers without a unit, and with one."""
     import polars as pl
 
     like = pl.select(pl.lit(wraps).is_between(*LIKE_RADIANS, closed="none")).to_series()
-    hints = {LIKE: (most := int(like.sum() or 0)), UNLIKE: len(like) + singles - most}
+    hints = {LIKE: (most := int(like.sum() or 0)), UNLIKE: len(like) + len(singles) - most}
     masses = [heading for heading in columns.headings if heading.name in MASSES]
-    if any(x.read.terms for x in masses) or any(shared[x].unit.terms for x in MASSES):
-        bare = (heading.name for heading in masses if not heading.unit)
-        hints |= {x: cells[x].cast(pl.Float64, strict=False).count() for x in bare}
+    is_weight = any(x.read.terms for x in masses) or any(shared[x].unit.terms for x in MASSES)
+    for x in (heading.name for heading in columns.headings if not heading.unit):
+        pairs = zip(singles, cells[x][singles], strict=True)
+        own = [row for row, cell in pairs if has_unit(cell) and LIKE_NUMBER.match(cell)]
+        is_number = doubles[x] != 0
+        hints[x] = int(is_number.sum() or 0) - int(is_number[own].sum() or 0)
+        hints[IN_UNITS + x] = len(own) + (is_weight and x in MASSES)
+    if is_weight:
         hints[PULL] = shared["M"].number != inf
     return hints
 

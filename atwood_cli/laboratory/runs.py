@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import shortened
-from ..solver.scene import MASSES, Input, SceneError
-from ..tables.cells import EMPTY, OWN_UNIT, has_unit, read_cell
+from ..solver.scene import MASSES, Input, SceneError, parameter_of
+from ..tables.cells import BARE, EMPTY, OWN_UNIT, has_unit, read_cell
 from ..tables.headings import NOTHING_SAID, Heading, Naming, named, read_as, refused
 from ..tables.records import LIKE_NUMBER
 from ..tables.sheets import Sheet, filled_down, sheet_of, units_in_cells
@@ -162,8 +162,12 @@ def read_runs(
     if left_out:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
     result = _as_columns(columns, runs, left_out)
-    has_unit = {own.name for own in columns.headings if own.unit or own.place in columns.with_units}
-    doubts = [*_doubts(result, {**given, **same}, has_unit), *_words_apart(sheet, columns, runs)]
+    in_units = {own.name for own in columns.headings if own.unit or own.place in columns.with_units}
+    cells = [cell for row in used for cell in row.cells.values() if cell[1].number and not cell[0].unit]
+    kinds = {(own.name, not has_unit(read.given)) for own, read in cells}
+    bare = sorted(x for x, is_bare in kinds if is_bare and (x, False) in kinds)
+    doubts = [*_doubts(result, {**given, **same}, in_units), *_words_apart(sheet, columns, runs)]
+    doubts += [BARE.format(x, parameter_of(x).unit) for x in bare]
     return result._replace(remarks=remarks, unused=unused, doubts=doubts, common=common, same=same)
 
 

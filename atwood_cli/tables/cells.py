@@ -15,6 +15,7 @@ EMPTY = ("", "NA", "NULL", "null")
 """The texts of cells without a number: R and databases write a word."""
 OWN_UNIT = re.compile(r"(?![eE][+-]?\d)[^\W\d_]|[°:]")
 """The sign that a cell has a unit: a letter that is not an exponent's, or the colon of minutes."""
+BARE = "cells of {} without a unit are read in {}."
 SHOWN_AS = " shown as "
 """Stands between the number of a cell of a workbook and the way it is shown, if this cannot be understood."""
 PART_THOUSANDS = r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$"
