@@ -20,16 +20,15 @@ if TYPE_CHECKING:
     import polars as pl
 
 Table = TypeVar("Table")
-OLDEST_POLARS = "1.41.1"
+OLDEST_POLARS = (1, 41, 1)
 
 
 def check_polars() -> None:
     """Raise ImportError for an older polars than the extra asks for: it reads a repeated column as one."""
     import polars as pl
 
-    oldest, version = ([*map(int, re.findall(r"\d+", x)[:3])] for x in (OLDEST_POLARS, pl.__version__))
-    if version < oldest:
-        versions = f"{OLDEST_POLARS} or newer, not {pl.__version__}"
+    if tuple(map(int, re.findall(r"\d+", pl.__version__)[:3])) < OLDEST_POLARS:
+        versions = f"{'.'.join(map(str, OLDEST_POLARS))} or newer, not {pl.__version__}"
         raise ImportError(f"this needs polars {versions}; pip install --upgrade polars")
 
 

@@ -18,14 +18,6 @@ Examples:
   atwood quantities mu_verge a
   atwood quantities --json
 """
-ON_FRICTION = (
-    "Friction acts along the string, which bends around the pulley, so its vector sum, friction_force, is not"
-    " T2 - T1. While a string grips with friction to spare, the tension along its arc is not unique."
-    " friction_force is then between friction_force_min and friction_force_max, if friction nowhere reverses"
-    " along the arc. Without mu, friction_force is the one at mu_verge."
-)
-
-
 Names = Annotated[list[str] | None, argument("Output", "[NAMES]", "Only these quantities.")]
 
 
@@ -41,8 +33,6 @@ def quantities(target: Destination, names: Names = None) -> int:
 
     def print_page(page: Page) -> None:
         page.table([column.capitalize() for column in columns], [rows])
-        if not names:
-            page.say(ON_FRICTION)
 
     show(Report(lambda: {"version": VERSION, "quantities": records}, lambda: records, print_page), target)
     return DONE

@@ -285,46 +285,42 @@ WHOLE_TURN = {"°": 360, "rad": 6.28}
 """A wrap as people type it from which on the string is wound round, as on a drum."""
 
 
-def remarks(answers: Answers) -> list[str]:
-    """Return further sentences on the scene, as far as they apply."""
-    answers, sentences = answers.in_units(IN_SI), list[str]()
-    decided = answers.decided
+def remarks(answers: Answers) -> Iterator[str]:
+    """Yield further sentences on the scene, as far as they apply."""
+    answers = answers.in_units(IN_SI)
+    decided, mu_k = answers.decided, answers.decided.scene.mu_k
     if decided.beta is not None and decided.beta > 1:
         rounded = format_number(strip_zeros(_beside(answers, Fraction(1))(decided.beta)))
         shown = as_typed(decided.beta) if decided.scene.I is None else rounded
-        sentences.append(
+        yield (
             f"The inertia factor `I/(M R^2)` is {shown}, above 1: some mass must lie outside"
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
-    sentences += [*_on_weights(answers), *on_units(answers), *_on_what_is_found(answers)]
+    yield from (*_on_weights(answers), *on_units(answers), *_on_what_is_found(answers))
     if decided.lacking:
-        return [*sentences, *_without_effect(answers)]
+        yield from _without_effect(answers)
+        return
     is_wound = decided.scene.wrap.number >= WHOLE_TURN[decided.scene.wrap.unit]
     is_open = decided.scene.M is decided.scene.I is None and decided.motion.finds is None
     if is_wound and is_open and decided.regime != "verge":  # there the verdict says that
-        sentences.append("`M` is not given; a drum that does not turn is `--M inf`.")
-    mu_k = decided.scene.mu_k
+        yield "`M` is not given; a drum that does not turn is `--M inf`."
     if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:
-        sentences.append("`mu_k` has no effect here, as the string does not slip.")
+        yield "`mu_k` has no effect here, as the string does not slip."
         if answers["mu_verge"] is not None and answers.settle(lambda m: m.mu_verge - m.ar.number(mu_k)) > 0:
-            sentences.append("A string that already slides keeps sliding, as `mu_k` is below `mu_verge`.")
+            yield "A string that already slides keeps sliding, as `mu_k` is below `mu_verge`."
     slips_above_a_mass = decided.scene.mu is not None and decided.slips_once_it_moves
     may_turn = decided.rim_mass is not None and not decided.is_driven
     if slips_above_a_mass and may_turn and not decided.slips_at("heaviest"):
-        sentences.append(
-            "If the heavier mass is far above `critical_heavier_mass`, the string holds again, as the pulley"
-            " turns with it."
-        )
+        yield "Far above `critical_heavier_mass`, the string holds again, as the pulley turns with it."
     if decided.locked and decided.has_axle_friction and not decided.axle_holds:
-        sentences.append("A locked pulley does not turn, so `axle` has no effect.")
+        yield "A locked pulley does not turn, so `axle` has no effect."
     if decided.scene.mu is not None and answers["acceleration"] is None:  # it depends on the pulley's mass
         ends = [_on_pulley(answers, mass) for mass in (Fraction(0), inf)]
         ranges = (
             f"`{name}` from {_say(ends[0], name)} to {with_unit(_say(ends[1], name), QUANTITIES[name].unit)}"
             for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
         )
-        sentences.append(f"As `M` goes from 0 to `inf`: {', '.join(ranges)}.")
-    return sentences
+        yield f"As `M` goes from 0 to `inf`: {', '.join(ranges)}."
 
 
 def _without_effect(answers: Answers) -> Iterator[str]:

@@ -88,7 +88,6 @@ def saved(picture: Picture, above: Sequence[str], below: str = "", panels: int =
     them is the title, and all others, with those ``below``, are the description.
     """
     from matplotlib import rc_context, rcParamsDefault
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     path = Path(picture.file)
@@ -105,7 +104,6 @@ def saved(picture: Picture, above: Sequence[str], below: str = "", panels: int =
     with written_beside(path, picture.force) as beside:
         with warnings.catch_warnings(action="ignore"), rc_context({**rcParamsDefault, **STYLE}):
             figure = Figure((WIDTH, HEIGHT + (panels - 1) * PANEL_HEIGHT), layout="constrained")
-            FigureCanvasAgg(figure)  # knows the width of words
             figure.suptitle("" if picture.bare else "\n".join(map(_in_lines, above)))
             figure.supxlabel(_in_lines(below), fontsize=9)
             yield figure
