@@ -39,7 +39,7 @@ def _status() -> int:
     if sys.stdout and not sys.stdout.isatty():
         # What fits in a pipe is one write, also with PYTHONUNBUFFERED: others may write to it.
         sys.stdout = os.fdopen(1, "w", 1 << 16, sys.stdout.encoding, "replace", closefd=False)
-        sys.__stdout__ = sys.stdout  # type: ignore[misc]
+        vars(sys)["__stdout__"] = sys.stdout  # a constant to type checkers
     try:
         # The environment may allow fewer digits than we do.
         sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)

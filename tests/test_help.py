@@ -12,8 +12,6 @@ import typer
 from atwood_cli import Solution, cli, solve, solve_arrays, solve_table
 from atwood_cli.solver.quantities import NAMES, QUANTITIES, STANDARD
 from atwood_cli.solver.scene import BODIES, INERTIA_FACTORS
-from atwood_cli.tables.sources import FORMATS
-from atwood_cli.tradeoff.measure import FAMILIES
 
 from .tools.running import LOADED, TOP, process
 
@@ -72,13 +70,10 @@ OFFERED = {
     "contact --figure a": "",
     "solve --g ": " ".join(BODIES),
     "contact --inertia ": " ".join(INERTIA_FACTORS),
-    "solve --M ": "inf",
-    "batch in.csv --from ": " ".join(FORMATS),
     "batch ": "",
     "fit ": "",
     "fit runs.csv --find ": "rim_mass axle gravity delay",
     "fit runs.csv --only mo": "moment_of_inertia",
-    "tradeoff --family ": " ".join(FAMILIES),
 }
 COMPLETING = """
 import os, sys

@@ -54,13 +54,7 @@ OutTable = Annotated[
 ]
 From = Annotated[
     str | None,
-    option(
-        "Files",
-        "--from",
-        metavar="|".join(FORMATS),
-        words=lambda: dict.fromkeys(FORMATS, ""),
-        help="Format of IN, if not that of its suffix.",
-    ),
+    option("Files", "--from", metavar="|".join(FORMATS), help="Format of IN, if not that of its suffix."),
 ]
 Rounded = Annotated[
     str | None,

@@ -75,11 +75,8 @@ def scene_option(name: str, remark: str | None = None) -> Any:
     meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
     text = f"{meaning}{unit}{REMARKS.get(name, '') if remark is None else remark}."
     metavar = (parameter.dimension or "number").split()[-1].upper()
-    words = dict(parameter.names)
-    if parameter.may_be_infinite:
-        words["inf"] = "a locked pulley"
     group = "Scene" if name in INPUTS else "Measured"
-    return option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)
+    return option(group, *flags, help=text, metavar=metavar, words=lambda: parameter.names)
 
 
 Command = Callable[..., int]

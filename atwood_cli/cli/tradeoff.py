@@ -1,6 +1,5 @@
 """`atwood tradeoff`: the time and the error of each way to solve scenes, on this computer."""
 
-from collections.abc import Mapping
 from itertools import chain
 from typing import Annotated
 
@@ -9,23 +8,10 @@ from ..reading.inputs import read_whole
 from ..reading.names import read_names
 from .options import DONE, FIGURE, option, results, with_options
 
-
-def _families() -> Mapping[str, str]:
-    from ..tradeoff.measure import FAMILIES
-
-    return {name: meaning for name, (_, meaning) in FAMILIES.items()}
-
-
 DEFAULT_SCENES = 500
 Families = Annotated[
     list[str] | None,
-    option(
-        "Measurement",
-        "--family",
-        metavar="NAME",
-        words=_families,
-        help="Measure this family of scenes only; repeatable.",
-    ),
+    option("Measurement", "--family", metavar="NAME", help="Measure this family of scenes only; repeatable."),
 ]
 HELP = """Measure what accuracy costs in time on this machine.
 

@@ -137,9 +137,8 @@ def _above(answers: Answers, name: str, bound: Input) -> float | Decimal:
 
     def difference(machine: Any) -> Any:
         number: Any = _in_its_unit(answers, bound)
-        if bound.unit.symbol == "rad":
-            return getattr(machine, name) - Angle(number, "rad").degrees(machine.ar)
-        return getattr(machine, name) - machine.ar.number(number)
+        angle = Angle(number, "rad" if bound.unit.symbol == "rad" else "°")
+        return getattr(machine, name) - angle.degrees(machine.ar)
 
     return answers.settle(difference, to_digits(1))
 
