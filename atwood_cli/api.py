@@ -7,6 +7,7 @@ from inspect import Parameter, Signature
 from math import isinf
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
 
+from .explain.given import VERSION
 from .explain.messages import notes
 from .numbers.digits import SHOWN_DIGITS
 from .numbers.text import nearest
@@ -142,17 +143,16 @@ class Solution(Generic[T]):
 
     def to_dict(self, budget: bool = False) -> dict[str, Any]:
         """Return the record of ``--json`` (and ``--budget``): Decimals are text, infinite values None."""
-        from .output.scene_page import record
-        from .output.text import cell
+        from json import loads
 
-        def plain(value: Any) -> Any:
-            if isinstance(value, Mapping):
-                return {key: plain(item) for key, item in value.items()}
-            if not isinstance(value, float | Decimal) or not (typed := cell(value)):
-                return None if isinstance(value, float | Decimal) else value
+        from .output.scene_page import record
+        from .output.text import as_json
+
+        def number(typed: str) -> Any:
             return typed if self._answers.digits or isinf(float(typed)) else float(typed)
 
-        return dict(plain(record(self._answers, budget=budget)))
+        text = "".join(as_json(record(self._answers, budget=budget)))
+        return {**loads(text, parse_float=number, parse_int=number), "version": VERSION}
 
     def __str__(self) -> str:
         """Return the page that ``atwood solve`` prints, without colours."""

@@ -132,22 +132,17 @@ def _at(answers: Answers, x: str, value: Fraction) -> str:
     return f"{label(x, dict(scene.terms).get(x))} = {with_unit(as_typed(value), scene.unit_of(x))}"
 
 
-LIMITS = {
-    **dict.fromkeys(("critical_heavier_mass", "critical_lighter_mass", "least_heavier_mass"), MASSES),
-    **dict.fromkeys(MASSES, MASSES),
-    "least_wrap": ("wrap",),
-}
-"""The limits of inputs and the masses that are found, and the inputs that have their units."""
+MASS_LIMITS = ("critical_heavier_mass", "critical_lighter_mass", "least_heavier_mass", *MASSES)
+"""The limits of masses, and the masses that are found."""
 USUAL_UNITS = ("", "kg", "g", "mg", "ug", "t", "deg", "°", "rad")
 
 
 def typed_units(answers: Answers) -> dict[str, Unit]:
     """Return the units of limits and masses found that differ from the usual ones, as an input has them."""
     units = dict[str, Unit]()
-    for limit, inputs in LIMITS.items():
-        typed = (answers.typed(x).unit for x in inputs)
-        if unusual := [unit for unit in typed if unit.symbol not in USUAL_UNITS]:
-            units[limit] = unusual[0]
+    for x, limits in (("wrap", ("least_wrap",)), ("m2", MASS_LIMITS), ("m1", MASS_LIMITS)):
+        if (unit := answers.typed(x).unit).symbol not in USUAL_UNITS:
+            units |= dict.fromkeys(limits, unit)
     return units
 
 
@@ -160,8 +155,7 @@ def in_typed_units(answers: Answers, names: Sequence[str]) -> Iterator[str]:
         yield f"{name} is {as_weight}{with_unit(_say(there, name), units[name].in_words)}."
 
 
-TO_SEE_IT = "; ask for digits (--digits 17) to see it"
-WAYS = {ABOVE_DOUBLES: TO_SEE_IT, BELOW_DOUBLES: TO_SEE_IT}
+WAYS = dict.fromkeys((ABOVE_DOUBLES, BELOW_DOUBLES), "; ask for digits (--digits 17) to see it")
 """What to type, by the reason that a value is missing."""
 
 
