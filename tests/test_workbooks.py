@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli.tables import packages, workbooks
+from atwood_cli.tables import packages
 from atwood_cli.tables.formats import shown_number
 from atwood_cli.tables.sources import Unreadable
 from atwood_cli.tables.workbooks import workbook_as_csv
@@ -36,7 +36,7 @@ def workbook(parts: dict[str, str], packed: int = ZIP_DEFLATED) -> bytes:
 ROOT = "<a xmlns:r='R' xmlns:table='T' xmlns:office='urn:office:1.0' xmlns:text='X' xmlns:calcext='C'>%s</a>"
 XLSX = {
     "xl/workbook.xml": ROOT % "<sheet name='Old' state='hidden' r:id='a'/><sheet name='Lab' r:id='b'/>",
-    "xl/_rels/workbook.xml.rels": ROOT % "<x Id='a' Target='s.xml'/><x Id='b' Target='/xl/t.xml'/>",
+    "xl/_rels/workbook.xml.rels": ROOT % "<x Id='a' Target='s.xml'/><x Id='b' Target='/xl/t.xml'/><x Id='c' Type='x/styles' Target='styles.xml'/><x Id='d' Type='x/sharedStrings' Target='sharedStrings.xml'/>",
     "xl/styles.xml": ROOT % """<numFmt numFmtId='170' formatCode='0.0" g"'/><cellXfs><xf numFmtId='0'/><xf numFmtId='45'/><xf numFmtId='14'/><xf numFmtId='170'/><xf numFmtId='10'/></cellXfs>""",
     "xl/sharedStrings.xml": ROOT % "<si><t>Lab 3</t></si><si><r><t>m</t></r><r><t>1</t></r><rPh><t>x</t></rPh></si>",
     "xl/s.xml": ROOT % "",
@@ -59,7 +59,9 @@ def test_a_workbook_is_its_first_sheet_as_shown(read: Any, name: str, parts: dic
     for old, new in (dates | errors).items():
         part = parts[main].replace(old, new).replace("float' office:date", "date' office:date")
         if part != parts[main]:
-            with pytest.raises(Unreadable, match=r"row 1: m2 '(a date, |=A3|#DIV/0!).* is not a number"):
+            with pytest.raises(
+                Unreadable, match=r"row 1: m2 '.*' is (not a number|shown as '(a date|format 14 of Excel)')"
+            ):
                 read(workbook(parts | {main: part}), name)
 
 
@@ -67,10 +69,10 @@ def test_a_workbook_is_its_first_sheet_as_shown(read: Any, name: str, parts: dic
     ("content", "why"),
     [
         (b"PK\x03\x04", "it is damaged, has a password, or is no workbook"),
-        (workbook({"content.xml": "<!DOCTYPE x><a/>"}), "content.xml has a document type"),
+        (workbook({"content.xml": "<!DOCTYPE x><a/>"}), "it is damaged, has a password, or is no workbook"),
         (workbook({"content.xml": "<a/>", "big": "0" * (65 << 20)}), "it has no sheet"),
-        (workbook({"content.xml": ODS["content.xml"].replace("<table:covered-table-cell/>", "<table:table-cell table:number-columns-repeated='9000000'><text:p>1</text:p></table:table-cell>")}), "it has more than 4 million cells"),
-        (workbook(XLSX | {"xl/t.xml": ROOT % "".join(f"<c r='XFD{i}'><v>1</v></c>" for i in range(1, 300))}), "it has more than 4 million cells"),
+        (workbook({"content.xml": ODS["content.xml"].replace("<table:covered-table-cell/>", "<table:table-cell table:number-columns-repeated='9000000'><text:p>1</text:p></table:table-cell>")}), "it has too many or too long cells for a workbook; save the sheet as CSV"),
+        (workbook(XLSX | {"xl/t.xml": ROOT % "".join(f"<row><c r='XFD{i}'><v>1</v></c></row>" for i in range(1, 900))}), "it has too many or too long cells for a workbook; save the sheet as CSV"),
     ],
     ids=count(),
 )  # fmt: skip
@@ -83,7 +85,7 @@ def test_a_workbook_with_a_password_is_refused(read: Any) -> None:
     content = bytearray(workbook(ODS))
     content[6] |= 1
     content[content.rindex(b"PK\x01\x02") + 8] |= 1
-    with pytest.raises(Unreadable, match="it is encrypted; password required"):
+    with pytest.raises(Unreadable, match="it is damaged, has a password, or is no workbook"):
         read(bytes(content), "runs.ods")
 
 
@@ -104,13 +106,16 @@ def test_sheets_by_name(batch: Batch, read: Any) -> None:
 # What is shown
 
 
+LINKS = "<R><Relationship Id='a' Type='x/worksheet' Target='%s'/><Relationship Id='b' Type='x/sharedStrings' Target='%s'/><Relationship Id='c' Type='x/styles' Target='styles.xml'/></R>"  # fmt: skip
+
+
 def xlsx(cells: str, code: str = "General", parts: Mapping[str, str] = {}, after: str = "") -> bytes:
     """A workbook of one sheet, whose cells of style 1 have a number format."""
     code = code.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     usual = {
         "_rels/.rels": "<R><Relationship Id='d' Type='x/officeDocument' Target='xl/workbook.xml'/></R>",
         "xl/workbook.xml": "<w xmlns:r='R'><sheets><sheet name='Lab' r:id='a'/></sheets></w>",
-        "xl/_rels/workbook.xml.rels": "<R><Relationship Id='a' Type='x/worksheet' Target='w/s.xml'/></R>",
+        "xl/_rels/workbook.xml.rels": LINKS % ("w/s.xml", "sharedStrings.xml"),
         "xl/styles.xml": f"<s><numFmts><numFmt numFmtId='200' formatCode=\"{code}\"/></numFmts>"
         "<cellStyleXfs><xf numFmtId='9'/></cellStyleXfs><cellXfs><xf/><xf numFmtId='200'/></cellXfs></s>",
         "xl/w/s.xml": f"<worksheet><sheetData>{cells}</sheetData>{after}</worksheet>",
@@ -164,11 +169,11 @@ def text_of(content: bytes) -> str:
         ("@", "2.5", "2.5"),
         ("mm:ss.00", "4.6180555555555553E-5", "3.99 s"),
         ("[h]:mm:ss", "1.25", "108000 s"),
-        ("h:mm:ss", "1.25", "a date, day 1.25"),
-        ("[mm]:ss.0", "-0.5", "a date, day -0.5"),
+        ("h:mm:ss", "1.25", None),
+        ("[mm]:ss.0", "-0.5", None),
         ("[ss].00", "0.001", None),
-        ("h:mm", "0.25", "a date, day 0.25"),
-        ("yyyy-mm-dd", "45000", "a date, day 45000"),
+        ("h:mm", "0.25", None),
+        ("yyyy-mm-dd", "45000", None),
     ],
 )
 def test_a_number_is_what_its_format_shows_or_is_refused(code: str, stored: str, shown: str | None) -> None:
@@ -182,7 +187,10 @@ def test_a_refused_cell_is_named_with_its_format(batch: Batch) -> None:
     ran = batch(
         xlsx(cells % "<row><c s='1'><v>2</v></c><c><v>3</v></c></row>", '0" Stück"'), "--only a", "b.xlsx"
     )
-    assert "first error, in row 1: m1 '2' is shown as '0\" Stück\"'; write the unit in the heading" in ran.err
+    assert (
+        "first error, in row 1: m1 '2' is shown as '0\" Stück\"'; write a plain number, and its unit in the heading"
+        in ran.err
+    )
 
 
 @pytest.mark.parametrize(
@@ -191,7 +199,7 @@ def test_a_refused_cell_is_named_with_its_format(batch: Batch) -> None:
         ("<c t='str' s='1'><f>B9</f><v></v></c><c><v>1</v></c>", "|1"),
         ("<c s='1'><f>B9</f><v></v></c><c><f>B8</f></c>", "=B9|=B8"),
         ("<c t='e'><f>1/0</f><v>#DIV/0!</v></c><c t='b'><v>1</v></c>", "#DIV/0!|TRUE"),
-        ("<c t='d'><v>2026-03-05</v></c><c t='inlineStr'><is><t>a_x000D_\nb_x005F_x</t></is></c>", "a date, 2026-03-05|a\nb_x"),
+        ("<c t='d'><v>2026-03-05</v></c><c t='inlineStr'><is><t>a_x000D_\nb_x005F_x</t></is></c>", "2026-03-05 shown as a date|a\nb_x"),
         ("<c t='str' s='1'><v>2.5</v></c>", '2.5 shown as 0;0;0;@" kg"'),
     ],
 )  # fmt: skip
@@ -219,7 +227,7 @@ TIME = (
         (FLOAT % ("percentage", "0.021", "2 %"), "2.1 %"),
         (FLOAT % ("percentage", "0.021", ""), "2.1%"),
         (FLOAT % ("float", "2", "2%"), "2%"),
-        (FLOAT % ("currency", "2", ""), "2 shown as ¤"),
+        (FLOAT % ("currency", "2", ""), "2"),
         (TIME % ("PT1H2M3.5S", "01:02:03,5"), "3723.5 s"),
         (TIME % ("-PT90S", ""), "-90 s"),
         (TIME % ("P1DT2H", ""), "93600 s"),
@@ -230,7 +238,7 @@ TIME = (
         ("<table:table-cell office:value-type='boolean' office:boolean-value='true'/>", "TRUE"),
         ("<table:table-cell table:formula='of:=[.B9]'/>", "=of:=[.B9]"),
         ("<table:table-cell table:formula='of:=[.B9]' office:value-type='string' office:string-value=''/><table:table-cell><text:p>x</text:p></table:table-cell>", "|x"),
-        ("<table:table-cell office:value-type='date' office:date-value='2026-03-05'><text:p>5.3.</text:p></table:table-cell>", "a date, 2026-03-05"),
+        ("<table:table-cell office:value-type='date' office:date-value='2026-03-05'><text:p>5.3.</text:p></table:table-cell>", "2026-03-05 shown as a date"),
         ("<table:table-cell><office:annotation><text:p>note</text:p></office:annotation><text:p>x</text:p></table:table-cell>", "x"),
     ],
 )  # fmt: skip
@@ -376,7 +384,6 @@ def test_hidden_rows_and_columns_are_read_and_named(read: Any) -> None:
 
 STRINGS = "<sst><si><t>x</t></si><si><r><t>y</t></r><rPh><t>z</t></rPh></si></sst>"
 CELL = "<row><c t='s'><v>1</v></c></row>"
-LINKS = "<R><Relationship Id='a' Type='x/worksheet' Target='%s'/><Relationship Id='b' Type='x/sharedStrings' Target='%s'/></R>"  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -434,27 +441,28 @@ def test_what_is_damaged_is_called_so(content: bytes) -> None:
 
 def test_other_methods_of_packing_are_refused() -> None:
     """They unpack any number of bytes at once; a damaged one ended in a traceback."""
-    with pytest.raises(Unreadable, match=r"content\.xml is packed in another way than workbooks are"):
+    with pytest.raises(Unreadable, match="it is damaged, has a password, or is no workbook"):
         text_of(workbook(ODS, ZIP_LZMA))
 
 
 LONG = "x" * 1000
 WIDE = "<table:table-row table:number-rows-repeated='%s'><table:table-cell table:number-columns-repeated='%s'><text:p>%s</text:p></table:table-cell></table:table-row>"  # fmt: skip
 OVERLAP = "<mergeCells><mergeCell ref='A1:B9'/><mergeCell ref='B1:B9'/></mergeCells>"
+TOO_LARGE = "it has too many or too long cells for a workbook; save the sheet as CSV"
 HOSTILE = [
-    (xlsx("<row>" + "<a>" * 200), "its XML has too many elements, or is nested too deeply"),
-    (xlsx("<c/>" * 3000), "its XML has too many elements, or is nested too deeply"),
-    (xlsx("<c " + " ".join(f"a{i}=''" for i in range(6000)) + "/>"), "its XML has too many elements"),
+    (xlsx("<row>" + "<a>" * 200), TOO_LARGE),
+    (xlsx(f"<row>{'<c/>' * 6000}</row>"), TOO_LARGE),
+    (xlsx(("<c " + " ".join(f"a{i}=''" for i in range(6000)) + "/>") * 5), TOO_LARGE),
     (xlsx("<!--" + LONG * 300), "a cell of xl/w/s.xml is longer than 1 MB"),
     (xlsx(f"<row><c><v>{LONG * 300}</v></c></row>"), "a cell of xl/w/s.xml is longer than 1 MB"),
-    (xlsx(f"<row><c><f>{LONG * 30}</f></c></row>" * 30), "it is larger than 0 MB, unpacked"),
-    (xlsx(f"<row><c t='str'><v>{LONG}</v></c></row>" * 300), "its texts are longer than 64 MB"),
-    (xlsx(CELL * 200, parts={"xl/sharedStrings.xml": STRINGS.replace("y", LONG)}), "its texts are longer than 64 MB"),
-    (xlsx(CELL, parts={"xl/sharedStrings.xml": "<sst>" + "<si/>" * 2200}), "it has more than 4 million cells"),
-    (ods(WIDE % (300, 1, LONG)), "its texts are longer than 64 MB"),
-    (ods(WIDE % (10**30, 1, "x")), "it has more than 4 million cells"),
-    (ods(WIDE % (1, 10**30, "x")), "it has more than 4 million cells"),
-    (xlsx("<row><c><v>1</v></c><c><v>2</v></c></row>" * 9, after=OVERLAP * 300), "it has too many merged cells, or they overlap"),
+    (xlsx(f"<row><c><f>{LONG * 30}</f></c></row>" * 30), TOO_LARGE),
+    (xlsx(f"<row><c t='str'><v>{LONG}</v></c></row>" * 300), TOO_LARGE),
+    (xlsx(CELL * 300, parts={"xl/sharedStrings.xml": STRINGS.replace("y", LONG)}), TOO_LARGE),
+    (xlsx(CELL, parts={"xl/sharedStrings.xml": "<sst>" + "<si/>" * 6000}), TOO_LARGE),
+    (ods(WIDE % (300, 1, LONG)), TOO_LARGE),
+    (ods(WIDE % (10**30, 1, "x")), TOO_LARGE),
+    (ods(WIDE % (1, 10**30, "x")), TOO_LARGE),
+    (xlsx("<row><c><v>1</v></c><c><v>2</v></c></row>" * 9, after=OVERLAP * 300), TOO_LARGE),
 ]  # fmt: skip
 
 
@@ -463,15 +471,8 @@ def test_hostile_workbooks_end_with_a_sentence(
     content: bytes, why: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The bounds are less here, so that the test is quick."""
-    for module, name, most in [
-        (packages, "MOST_NODES", 5000),
-        (packages, "LONGEST_RECORD", 100_000),
-        (packages, "MOST_UNPACKED", 800_000),
-        (packages, "MOST_BYTES", 200_000),
-        (workbooks, "MOST_BYTES", 150_000),
-        (workbooks, "MOST_CELLS", 2000),
-    ]:
-        monkeypatch.setattr(module, name, most)
+    for name, most in (("MOST", 5000), ("LONGEST_RECORD", 100_000)):
+        monkeypatch.setattr(packages, name, most)
     with pytest.raises(Unreadable, match=why):
         text_of(content)
 

@@ -41,7 +41,9 @@ def pointed(name: str, cell: str, comma: bool) -> str:
     """Return a cell with a decimal point, without blanks around it. Raises SceneError."""
     number, is_shown, way = cell.partition(SHOWN_AS)
     if is_shown:
-        raise SceneError(name, number, f"is shown as {in_quotes(way)}; write the unit in the heading")
+        raise SceneError(
+            name, number, f"is shown as {in_quotes(way)}; write a plain number, and its unit in the heading"
+        )
     if comma and "." in cell:
         raise SceneError(name, cell, "has a point in a table of decimal commas; write all alike")
     return (cell.replace(",", ".") if comma else cell).strip()

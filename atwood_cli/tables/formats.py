@@ -20,12 +20,8 @@ BUILT_IN = {
     **{"0": GENERAL, "49": "@", "21": "h:mm:ss", "45": "mm:ss", "46": "[h]:mm:ss", "47": "mm:ss.0"},
     **dict.fromkeys(("1", "2", "3", "4", "11", "48"), "0") | dict.fromkeys(("9", "10"), "0%"),
     **dict.fromkeys(("37", "38", "39", "40"), "0_);(0)"),
-    **dict.fromkeys(map(str, (*range(14, 21), 22, *range(27, 37), *range(50, 59))), "d"),
 }
-"""The formats that every .xlsx has, by their numbers, but for the digits; d is a date."""
-FIRST_OWN = 164
-DATE = "a date, "
-SECTION_OF_TEXTS = 4
+"""The formats that every .xlsx has, by their numbers, but for the digits, and for dates."""
 HALF = 0.5000001
 """Half a step of the last digit, and a little for doubles."""
 
@@ -40,38 +36,41 @@ _SECTION = re.compile(
     rf"{_COLOUR}((?:{_LITERAL})*)(?:({_CLOCK})|({_NUMBER}))((?:{_LITERAL})*)(%?)((?:{_LITERAL})*)",
     re.ASCII | re.DOTALL,
 )
-_TEXT_SECTION = re.compile(rf"{_COLOUR}(?:{_PADDING})*@(?:{_PADDING})*", re.DOTALL)
-_AS_IT_STANDS = re.compile(r'"[^"]*"|\\.|\[[^\]]*\]|[_*].', re.DOTALL)
-_DIVIDED = re.compile(rf'((?:{_AS_IT_STANDS.pattern}|[^"\\\[_*;])*);', re.DOTALL)
+_AS_TEXT = re.compile(
+    rf"(?:[^;@]*;){{0,2}}[^;@]*|(?:.*;)?{_COLOUR}(?:{_PADDING})*@(?:{_PADDING})*", re.DOTALL
+)
+"""The formats that show a text as it is: without a section for texts, or with one that adds nothing."""
 _CONDITION = re.compile(r"\[[<>=]")
 _SHOWN = re.compile(r"([+-]?)([0-9.,'’\s]*[0-9])[.,]?(?:[eE]([+-]?[0-9]{1,2}))?(?![0-9])(.*)", re.DOTALL)
 _BUT_DIGITS = {mark: re.compile(f"[^0-9{mark}]") for mark in ".,"}
 _COUNT = r"([0-9]+(?:\.[0-9]*)?)"
 _DURATION = re.compile(rf"(-?)P(?:{_COUNT}D)?(?:T(?:{_COUNT}H)?(?:{_COUNT}M)?(?:{_COUNT}S)?)?")
 
-Rule = tuple[str, int, str, float]
-"""How a section shows numbers: behind a sign, times a factor, with a unit; a clock up to so many seconds."""
 
+@lru_cache(1024)
+def _rule_for(order: int, code: str) -> tuple[int, str, float] | None:
+    """Return how a format shows numbers above 0 (1), 0, or below (-1): times a factor, with a unit.
 
-def _sections(code: str) -> list[str]:
-    """Return the sections of a number format, none if it cannot be divided, or has conditions."""
-    sections = _DIVIDED.findall(f"{code};")
-    return sections if ";".join(sections) == code and not _CONDITION.search(code) else []
-
-
-def _rule(section: str) -> Rule | None:
-    """Return how a section shows numbers, None if that is not wholly understood or may show nothing."""
-    if not (match := _SECTION.fullmatch(section)):
+    A clock shows them up to so many seconds. None if it is not wholly understood, or may show nothing.
+    A semicolon that is quoted leaves a section that is not understood.
+    """
+    sections = code.split(";")
+    has_own = len(sections) > 1 and order < 0
+    match = _SECTION.fullmatch(sections[1 if has_own else 2 if len(sections) > 2 and order == 0 else 0])
+    if not match or _CONDITION.search(code):
         return None
     before, clock, number, literals, percent, after = match.groups(default="")
     unit = (_text_of(literals) + percent + _text_of(after)).rstrip()
+    signs = ["-"] if has_own else [""] if order < 0 else ["", "+"]
+    if _text_of(before).strip() not in signs:
+        return None
     if not is_shown_unit(unit) or (percent and unit.lstrip() != PERCENT):
         return None
     if clock:
         turn = inf if "[" in clock else DAY if clock[0] in "hH" else HOUR
-        return None if unit else (_text_of(before).strip(), 1, "", turn)
+        return None if unit else (1, "", turn)
     shows_zero = "0" in re.split("[Ee][+-]", number)[0] or number.lower() == "general"
-    return (_text_of(before).strip(), 100 if percent else 1, unit, 0) if shows_zero else None
+    return (100 if percent else 1, unit, 0) if shows_zero else None
 
 
 def _text_of(literals: str) -> str:
@@ -84,57 +83,45 @@ def is_shown_unit(text: str) -> bool:
     return text.strip() in ("", PERCENT) or bool(symbol_of(text.strip()))
 
 
-@lru_cache(1024)
-def _rule_for(order: int, code: str) -> Rule | None:
-    """Return the rule by which a format shows numbers above 0 (1), 0, or below (-1), with their sign."""
-    rules = [*map(_rule, _sections(code))]
-    has_own = len(rules) > 1 and order < 0
-    rule = (rules or [None])[1 if has_own else 2 if len(rules) > 2 and order == 0 else 0]
-    signs = ("-",) if has_own else ("",) if order < 0 else ("", "+")
-    return rule if rule and rule[0] in signs else None
-
-
 def shown_number(stored: str, code: str) -> str:
     """Return a number as its format shows it: in percent, with a unit, as a duration in seconds."""
     value = _finite(stored)
     if code in PLAIN:
         return f"{value + 0.0:.15g}"
     if rule := _rule_for((value > 0) - (value < 0), code):
-        _, factor, unit, turn = rule
+        factor, unit, turn = rule
         if not turn:
             return f"{value * factor + 0.0:.15g}{unit}"
         if 0 <= (seconds := round(value * DAY, 6)) < turn:
             return f"{seconds:.15g} s"
-    is_date = re.search("(?i)[dhmsy]", _AS_IT_STANDS.sub("", code))
-    return f"{DATE}day {value:.15g}" if is_date else f"{value:.15g}{SHOWN_AS}{code}"
+    return refused(f"{value:.15g}", code)
 
 
 def shown_text(text: str, code: str) -> str:
     """Return a text, with its format if that shows more than the text or less."""
-    if not text or code in PLAIN:
-        return text
-    sections = _sections(code)
-    is_plain = "@" not in code and len(sections) < SECTION_OF_TEXTS
-    is_plain |= bool(sections) and bool(_TEXT_SECTION.fullmatch(sections[-1]))
-    return text if is_plain else f"{text}{SHOWN_AS}{code}"
+    return text if not text or _AS_TEXT.fullmatch(code) else refused(text, code)
 
 
-def agreed(value: str, shown: str) -> str:
+def refused(value: str, way: str) -> str:
+    """Return a cell that is no number, with the way it is shown, for the error."""
+    return f"{value}{SHOWN_AS}{way}"
+
+
+def agreed(value: str, shown: str, in_percent: bool) -> str:
     """Return a number with its unit, if it is what is shown up to rounding; else as an error."""
-    number = _finite(value)
-    if shown == value:
-        return f"{number + 0.0:.15g}"
+    number = _finite(value) * (100 if in_percent else 1)
+    if not shown or (shown == value and not in_percent):
+        return f"{number + 0.0:.15g}{PERCENT if in_percent else ''}"
     if not (match := _SHOWN.fullmatch(shown.replace("−", "-"))):
-        return shown or f"{number:.15g}"
+        return shown
     sign, digits, power, unit = match.groups(default="")
-    for scale in ((100, 1) if unit.strip() == PERCENT else (1,)) if is_shown_unit(unit) else ():
-        for mark in ".,":
-            whole, *decimals = _BUT_DIGITS[mark].sub("", digits).split(mark)
-            shown_value = float(f"{sign}{whole}.{''.join(decimals)}e{power or 0}")
-            step = 10.0 ** (int(power or 0) - sum(map(len, decimals)))
-            if not decimals[1:] and abs(number * scale - shown_value) <= step * HALF:
-                return f"{number * scale + 0.0:.15g}{unit.rstrip()}"
-    return f"{number:.15g}{SHOWN_AS}{shown}"
+    for mark in ".," if is_shown_unit(unit) else "":
+        whole, *decimals = _BUT_DIGITS[mark].sub("", digits).split(mark)
+        shown_value = float(f"{sign}{whole}.{''.join(decimals)}e{power or 0}")
+        step = 10.0 ** (int(power or 0) - sum(map(len, decimals)))
+        if not decimals[1:] and abs(number - shown_value) <= step * HALF:
+            return f"{number + 0.0:.15g}{unit.rstrip()}"
+    return refused(value, shown)
 
 
 def duration(value: str, shown: str) -> str:
@@ -147,7 +134,7 @@ def duration(value: str, shown: str) -> str:
             step = 10.0 ** -len(clock.partition(".")[2])
             if not re.search("[0-9]", clock) or abs(read_number(clock, "time").number - total) < step:
                 return f"{total:.15g} s"
-    return f"{value}{SHOWN_AS}{shown or 'a time'}"
+    return refused(value, shown or "a time")
 
 
 def _finite(value: str) -> float:

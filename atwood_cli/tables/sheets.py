@@ -20,11 +20,12 @@ from .headings import (
     unit_within,
     units_in,
 )
-from .packages import MOST_BYTES
 from .records import LIKE_NUMBER, Layout, find_header, records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
 from .workbooks import opened_table
 
+MOST_BYTES = 64 << 20
+"""The most bytes of a table of runs, unpacked."""
 COMMENTS = "lines that begin with # left out"
 MISSING = ("nan", "NaN", "None", "<NA>", "NaT", "--")
 """How Python writes a missing value, and NumPy a masked one."""

@@ -7,28 +7,23 @@ understood. A cell merged over rows counts in each of them.
 
 import csv
 import re
-from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from functools import lru_cache
 from io import BytesIO, StringIO
 from itertools import chain
-from posixpath import dirname
 from string import digits
-from typing import IO, NamedTuple
+from typing import IO
 from zipfile import ZipFile
 
 from ..numbers.text import counted, in_quotes, shortened
 from ..solver.scene import SceneError
-from .formats import BUILT_IN, DATE, FIRST_OWN, GENERAL, agreed, duration, shown_number, shown_text
-from .packages import DAMAGE, MOST_BYTES, MOST_CELLS, TOO_MUCH_TEXT, UNFIT, Package, resolved
+from .formats import BUILT_IN, GENERAL, agreed, duration, refused, shown_number, shown_text
+from .packages import DAMAGE, UNFIT, Package
 from .sources import WORKBOOKS, Unreadable, opened
 
-MOST_ROWS, MOST_COLUMNS = 1 << 20, 1 << 14
-"""The size of a sheet in Excel and in LibreOffice."""
 LONGEST_LIST = 500
 """The most characters of a message that name sheets."""
-TOO_MANY = f"it has more than {MOST_CELLS >> 20} million cells"
 TRUE = ("1", "true")
 VISIBLE = "visible"
 CELLS = ("table-cell", "covered-table-cell")
@@ -36,16 +31,16 @@ _ESCAPED = re.compile("_x(000[9AaDd]|00[2-7][0-9A-Fa-f])_")
 """A tab, a line break, or a sign of ASCII in the texts of .xlsx."""
 
 
-class Grid(NamedTuple):
+class Grid:
     """The texts of a sheet by row and column, and what is merged or hidden.
 
     A merged cell has its first row and column, and its last.
     """
 
-    rows: dict[int, dict[int, str]]
-    merged: list[tuple[int, int, int, int]]
-    hidden_rows: set[int]
-    hidden_columns: set[int]
+    def __init__(self) -> None:
+        self.rows: dict[int, dict[int, str]] = {}
+        self.merged: list[tuple[int, int, int, int]] = []
+        self.hidden_rows, self.hidden_columns = set[int](), set[int]()
 
 
 Book = tuple[dict[str, bool], str, Grid]
@@ -83,14 +78,11 @@ def workbook_as_csv(file: IO[bytes], name: str | None) -> tuple[bytes, list[str]
         raise Unreadable(
             f"there is no sheet {in_quotes(shown)}; there are {names}" if names else "it has no sheet"
         )
-    rows = _unmerged(grid.rows, grid.merged)
+    rows = _unmerged(package, grid)
     if not rows:
         raise Unreadable(f"sheet {in_quotes(shown)} of {names} is empty")
     width = 1 + max(map(max, rows.values()))
-    if width * len(rows) > MOST_CELLS:
-        raise Unreadable(TOO_MANY)
-    if sum(len(text) for cells in rows.values() for text in cells.values()) > MOST_BYTES:
-        raise Unreadable(TOO_MUCH_TEXT)
+    package.count(width * len(rows))
     remarks = [f"sheet {in_quotes(shown)} of {names}"] if len(hidden) > 1 else []
     columns = {column for column in grid.hidden_columns if column < width}
     counts = {"hidden row": len(grid.hidden_rows & rows.keys()), "hidden column": len(columns)}
@@ -106,23 +98,20 @@ def workbook_as_csv(file: IO[bytes], name: str | None) -> tuple[bytes, list[str]
     return buffer.getvalue().encode(), remarks
 
 
-def _unmerged(
-    rows: Mapping[int, dict[int, str]], merged: Iterable[tuple[int, int, int, int]]
-) -> dict[int, dict[int, str]]:
+def _unmerged(package: Package, grid: Grid) -> dict[int, dict[int, str]]:
     """Return rows in which a merged cell shows the same in each row; what lies under it does not count.
 
-    A row that shows nothing else is left out. Raises Unreadable for too many merged cells.
+    A row that shows nothing else is left out.
     """
-    shown, numbers, fillings, steps = dict(rows), sorted(rows), list[tuple[int, int, str]](), 0
-    for top, left, bottom, right in merged:
-        text = rows.get(top, {}).get(left, "")
-        for number in numbers[bisect_left(numbers, top) : bisect_right(numbers, bottom)]:
+    shown, fillings = dict(grid.rows), list[tuple[int, int, str]]()
+    for top, left, bottom, right in grid.merged:
+        text = grid.rows.get(top, {}).get(left, "")
+        package.count(bottom - top)
+        for number in shown.keys() & range(top, bottom + 1):
             row, first = shown[number], left + 1 if number == top else left
+            package.count(1 + len(row))
             shown[number] = {column: x for column, x in row.items() if not first <= column <= right}
             fillings.append((number, left, text))
-            steps += 1 + len(row)
-            if steps > MOST_CELLS:
-                raise Unreadable("it has too many merged cells, or they overlap")
     shown = {number: cells for number, cells in shown.items() if cells}
     for number, column, text in fillings:
         if text and number in shown:
@@ -147,12 +136,11 @@ def _xlsx(package: Package, wanted: str | None) -> Book:
             hidden[sheet["name"]] = sheet.get("state", VISIBLE) != VISIBLE
             paths[sheet["name"]] = links[sheet["id"]][1]
     if (shown := _chosen(hidden, wanted)) not in paths:
-        return hidden, shown, Grid({}, [], set(), set())
+        return hidden, shown, Grid()
     if paths[shown].lower() not in package.parts:
         raise LookupError
-    usual = {kind: resolved(dirname(book), f"{kind}.xml") for kind in ("styles", "sharedStrings")}
-    parts = usual | dict(links.values())
-    codes, texts = _codes(package, parts["styles"]), _texts(package, parts["sharedStrings"])
+    parts = dict(links.values())
+    codes, texts = _codes(package, parts.get("styles", "")), _texts(package, parts.get("sharedStrings", ""))
     return hidden, shown, _cells_of_xlsx(package, paths[shown], codes, texts)
 
 
@@ -164,9 +152,8 @@ def _codes(package: Package, path: str) -> list[str]:
             own[style["numFmtId"]] = style["formatCode"] or GENERAL
         elif name == "xf" and parent == "cellXfs":
             numbers.append(style.get("numFmtId", "0"))
-    others = {x: GENERAL if int(x) >= FIRST_OWN else f"number {x} of Excel's formats" for x in numbers}
-    codes = others | BUILT_IN | own
-    return [codes[x] for x in numbers]
+    codes = BUILT_IN | own
+    return [codes.get(x, f"format {x} of Excel") for x in numbers]
 
 
 def _texts(package: Package, path: str) -> list[str]:
@@ -177,9 +164,8 @@ def _texts(package: Package, path: str) -> list[str]:
             runs.append(text or "")
         elif name == "si":
             texts.append(_unescaped("".join(runs)))
+            package.count(1, texts[-1])
             runs.clear()
-            if len(texts) > MOST_CELLS:
-                raise Unreadable(TOO_MANY)
     return texts
 
 
@@ -192,13 +178,9 @@ def _unescaped(text: str) -> str:
 
 def _cells_of_xlsx(package: Package, path: str, codes: Sequence[str], texts: Sequence[str]) -> Grid:
     """Return the cells of a sheet. Those without a place follow the one before."""
-    grid, row, column, held, runs = Grid({}, [], set(), set()), 0, -1, dict[str, str](), list[str]()
-    for parent, name, attributes, text in package.elements(path, begins=["row"]):
-        if text is None:
-            row, column = int(attributes.get("r") or row + 1), -1
-            if attributes.get("hidden") in TRUE:
-                grid.hidden_rows.add(row)
-        elif name == "t" and parent in ("is", "r"):
+    grid, row, column, cells, held, runs = Grid(), 1, -1, dict[int, str](), dict[str, str](), list[str]()
+    for parent, name, attributes, text in package.elements(path):
+        if name == "t" and parent in ("is", "r"):
             runs.append(text)
         elif parent == "c":
             held[name] = text
@@ -207,15 +189,24 @@ def _cells_of_xlsx(package: Package, path: str, codes: Sequence[str], texts: Seq
             if place := attributes.get("r"):
                 row, column = _place(place)
             if shown := _shown_in_xlsx(attributes, held, "".join(runs), codes, texts):
-                grid.rows.setdefault(row, {})[column] = shown
+                cells[column] = shown
+                package.count(1, shown)
             held.clear()
             runs.clear()
+        elif name == "row":
+            row = int(attributes.get("r") or row)
+            if cells:
+                grid.rows[row] = cells
+            if attributes.get("hidden") in TRUE:
+                grid.hidden_rows.add(row)
+            row, column, cells = row + 1, -1, {}
         elif name == "mergeCell":
             first, _, last = attributes["ref"].partition(":")
             grid.merged.append((*_place(first), *_place(last or first)))
         elif name == "col" and attributes.get("hidden") in TRUE:
-            most = min(int(attributes["max"]), MOST_COLUMNS)
-            grid.hidden_columns.update(range(int(attributes["min"]) - 1, most))
+            first_column, last_column = int(attributes["min"]) - 1, int(attributes["max"])
+            package.count(last_column - first_column)
+            grid.hidden_columns.update(range(first_column, last_column))
     return grid
 
 
@@ -253,7 +244,7 @@ def _shown_in_xlsx(
         case "b":
             return "TRUE" if value in TRUE else "FALSE"
         case "d":
-            return f"{DATE}{value}"
+            return refused(value, "a date")
         case "e":
             return value
     raise ValueError  # there is no such kind, or text
@@ -264,53 +255,50 @@ def _shown_in_xlsx(
 
 def _ods(package: Package, wanted: str | None) -> Book:
     """Read the names of the sheets and, in one go, the cells of one."""
-    hidden, styles, is_hidden, shown = dict[str, bool](), set[str](), False, wanted or ""
-    grid, row, column, columns, is_shown = Grid({}, [], set(), set()), 0, 0, 0, False
+    hidden, styles, is_hidden = dict[str, bool](), set[str](), False
+    shown, kept, grid, row, column, columns = "", Grid(), Grid(), 0, 0, 0
     paragraphs, cells = list[str](), dict[int, str]()
-    for parent, name, attributes, text in package.elements("content.xml", begins=["table"]):
-        if text is None and parent != "dde-link":
-            sheet = attributes.get("name", "")
-            hidden[sheet] = attributes.get("style-name") in styles
-            if not shown and not hidden[sheet]:
-                shown = sheet
-            is_shown = sheet == shown
-        elif name == "table-properties":
+    for parent, name, attributes, text in package.elements("content.xml"):
+        if name == "table-properties":
             is_hidden = attributes.get("display") == "false"
         elif name == "style" and is_hidden:
             styles.add(attributes.get("name", ""))
             is_hidden = False
-        elif name == "table":
-            is_shown = False
         elif name == "p" and parent in CELLS:
-            paragraphs.append(text or "")
+            paragraphs.append(text)
         elif name in CELLS:
             last = column + _count(attributes, "columns-repeated")
-            if is_shown and name == CELLS[0] and (text := _shown_in_ods(attributes, "\n".join(paragraphs))):
-                if last > MOST_COLUMNS:
-                    raise Unreadable(TOO_MANY)
+            if name == CELLS[0] and (text := _shown_in_ods(attributes, "\n".join(paragraphs))):
+                package.count(last - column)
                 cells |= dict.fromkeys(range(column, last), text)
                 bottom, right = (_count(attributes, f"{x}-spanned") - 1 for x in ("rows", "columns"))
                 if bottom or right:
                     grid.merged.append((row, column, row + bottom, column + right))
             column = last
             paragraphs.clear()
-        elif is_shown and name == "table-row":
+        elif name == "table-row":
             last = row + _count(attributes, "rows-repeated")
-            if cells and last > MOST_ROWS:
-                raise Unreadable(TOO_MANY)
             if cells:
+                package.count(last - row, "".join(cells.values()))
                 grid.rows.update(dict.fromkeys(range(row, last), cells))
                 if attributes.get("visibility", VISIBLE) != VISIBLE:
                     grid.hidden_rows.update(range(row, last))
             row, column, cells = last, 0, {}
-        elif is_shown and name == "table-column":
+        elif name == "table-column":
             last = columns + _count(attributes, "columns-repeated")
             if attributes.get("visibility", VISIBLE) != VISIBLE:
-                grid.hidden_columns.update(range(columns, min(last, MOST_COLUMNS)))
+                package.count(last - columns)
+                grid.hidden_columns.update(range(columns, last))
             columns = last
-    if hidden and not shown:
-        return _ods(package, _chosen(hidden, None))
-    return hidden, shown, grid
+        elif name == "table":
+            package.count(4)
+            sheet = attributes.get("name", "")
+            if parent != "dde-link":
+                hidden[sheet] = attributes.get("style-name") in styles
+                shown = _chosen(hidden, wanted)
+                kept = grid if sheet == shown else kept
+            grid, row, columns = Grid(), 0, 0
+    return hidden, shown, kept
 
 
 def _count(attributes: Mapping[str, str], things: str) -> int:
@@ -321,13 +309,11 @@ def _shown_in_ods(cell: Mapping[str, str], shown: str) -> str:
     """Return what a cell shows, a number in full; the formula if no value is stored with it."""
     match cell.get("value-type"):
         case "float" | "currency" | "percentage" as kind:
-            if shown.strip():
-                return agreed(cell["value"], shown.strip())
-            return shown_number(cell["value"], {"float": GENERAL, "percentage": "0%"}.get(kind, "¤"))
+            return agreed(cell["value"], shown.strip(), kind == "percentage")
         case "time":
             return duration(cell["time-value"], shown)
         case "date":
-            return f"{DATE}{cell['date-value']}"
+            return refused(cell["date-value"], "a date")
         case "boolean":
             return shown or cell["boolean-value"].upper()
         case None if not shown and "formula" in cell:
