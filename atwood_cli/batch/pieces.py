@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..numbers.text import in_quotes
 from ..solver.scene import SceneError
-from ..tables.headings import UNREAD, Heading, Naming, units_in
+from ..tables.headings import UNREAD, Heading, Naming
 from ..tables.records import GoesOn, find_header, records_of, wrong_width
 from ..tables.sources import Unreadable, whole_lines
 
@@ -62,13 +62,9 @@ class Csv:
 
     def pieces(self, headings: Sequence[Heading]) -> Iterator[Piece]:
         """Yield the records below the header. Raises Unreadable."""
-        is_first = True
         for text in chain([self._rest], self._texts):
             piece = self._in_bulk(text, headings) or self._whole(text, partial(self._by_csv, headings))
             if len(piece.texts):
-                if is_first and headings and units_in(piece.cells.row(0)):
-                    raise Unreadable("row 1 has units; write them in the headings, as m1 (g)")
-                is_first = False
                 yield piece
 
     def _whole(self, text: str, read: Callable[[str], Any]) -> Any:

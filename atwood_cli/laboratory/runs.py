@@ -16,7 +16,7 @@ from ..solver.scene import MASSES, Input, SceneError, parameter_of
 from ..tables.cells import BARE, EMPTY, OWN_UNIT, has_unit, read_cell
 from ..tables.headings import NOTHING_SAID, Heading, Naming, named, read_as, refused
 from ..tables.records import LIKE_NUMBER
-from ..tables.sheets import Sheet, filled_down, sheet_of, units_in_cells
+from ..tables.sheets import Sheet, filled_down, sheet_of
 from ..tables.sources import Unreadable
 from .columns import CONDITIONS, MEASURED, VOCABULARY, Columns, Kind, columns_of
 
@@ -120,7 +120,7 @@ def read_runs(
     Rows ``without``, by their numbers, and their cells, as 8:t2, are left out. Raises Unreadable if it is no
     table of runs, SceneError for what does not fit the table.
     """
-    sheet = units_in_cells(sheet_of(source, VOCABULARY, naming, sheet_name))
+    sheet = sheet_of(source, VOCABULARY, naming, sheet_name)
     columns = columns_of(sheet, naming, given)
     _check_titles(sheet, columns)
     sheet = filled_down(sheet, naming.filled)

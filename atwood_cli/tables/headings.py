@@ -354,11 +354,10 @@ def refused(column: str, why: str) -> Unreadable:
     return Unreadable(f"column {in_quotes(column)} {why}")
 
 
-def units_in(row: Sequence[str]) -> list[str]:
-    """Return the units in a row below the headings that has nothing else, none if there is no such row."""
+def are_units(row: Sequence[str]) -> bool:
+    """Decide whether a row below the headings has units and nothing else."""
     units = [cell.strip(" ()[]") for cell in row]
-    is_row_of_units = all(unit in ("", "-", PERCENT) or symbol_of(unit) for unit in units)
-    return units if is_row_of_units and any(map(symbol_of, units)) else []
+    return all(unit in ("", "-", PERCENT) or symbol_of(unit) for unit in units) and any(map(symbol_of, units))
 
 
 def named(column: str, place: int) -> str:

@@ -5,10 +5,11 @@ import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import suppress
 from io import StringIO
-from itertools import islice
+from itertools import chain, islice, pairwise
 from typing import NamedTuple
 
 from ..numbers.text import counted, without_blanks
+from .headings import are_units
 from .sources import LONGEST_RECORD, Unreadable
 
 SEPARATORS = ",\t;"
@@ -59,7 +60,8 @@ class Layout(NamedTuple):
     def headings(self, rows: Sequence[Sequence[str]], width: int) -> list[str]:
         """Return the headings in the first of these rows: cells below each other are one."""
         padded = ([*row, *[""] * width][:width] for row in rows[self.above : self.above + self.heads])
-        return [without_blanks(" ".join(cells)) for cells in zip(*padded, strict=True)] or [""] * width
+        columns = ([cell for cell in cells if cell.strip() != "-"] for cells in zip(*padded, strict=True))
+        return [without_blanks(" ".join(cells)) for cells in columns] or [""] * width
 
 
 def find_header(
@@ -68,7 +70,8 @@ def find_header(
     """Find the headings of a table, and its separator, by which most are known, or else are words.
 
     The header is the first row with two that are ``known``, or else one among several cells, or else with
-    most words. With ``decisive`` columns, the rows above the first number there are headings, perhaps none.
+    most words; a row of units below belongs to it. With ``decisive`` columns, the rows above the first number
+    there are headings, perhaps none.
     """
     csv.field_size_limit(LONGEST_RECORD)
     lines = [line for line in islice(StringIO(text), MOST_ABOVE) if line.strip()]
@@ -84,11 +87,12 @@ def find_header(
     for separator in SEPARATORS:
         with suppress(csv.Error):
             table = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
-            for above, row in enumerate(islice(table, MOST_ABOVE + 1)):
+            for above, (row, below) in enumerate(pairwise(islice(chain(table, [[]]), MOST_ABOVE + 2))):
                 count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
                 is_known = count > 1 or sum(map(bool, row)) > 1  # a title may have the name of a quantity
                 rank = count if is_known else 0, words, separator == usual, len(row)
-                headers.append((rank, Layout(separator, above, 1 if words else 0, count)))
+                heads = (1 + are_units(below)) if words else 0
+                headers.append((rank, Layout(separator, above, heads, count)))
                 if count > 1:
                     break
     return max(headers, key=lambda header: header[0], default=((), Layout(SEPARATORS[0], 0, 1)))[1]

@@ -8,17 +8,16 @@ from os import PathLike, fspath
 from typing import IO, Any, NamedTuple
 
 from ..numbers.text import in_quotes
-from .cells import OWN_UNIT
 from .headings import (
     ABOVE,
     NOTHING_SAID,
     Heading,
     Naming,
     Vocabulary,
+    are_units,
     may_be_mass,
     recognised,
     unit_within,
-    units_in,
 )
 from .records import LIKE_NUMBER, Layout, find_header, records_of, wrong_width
 from .sources import Unreadable, blocks_of, whole_lines
@@ -73,7 +72,9 @@ def sheet_of(source: Any, vocabulary: Vocabulary, naming: Naming, name: str | No
     if len({len(cells) for _, cells in columns}) > 1:
         lengths = ", ".join(f"{in_quotes(name)} has {len(cells)} cells" for name, cells in columns)
         raise Unreadable(f"its columns differ in length: {lengths}")
-    return Sheet([name for name, _ in columns], list(zip(*(cells for _, cells in columns), strict=True)))
+    names, *rows = [*zip(*([name, *cells] for name, cells in columns), strict=True)] or [()]
+    heads = 1 + (are_units(rows[0]) if rows else False)
+    return Sheet(Layout("", 0, heads).headings([names, *rows], len(names)), rows[heads - 1 :])
 
 
 def _columns(source: Any) -> Iterable[tuple[object, Any]]:
@@ -100,21 +101,6 @@ def _text(cell: Any) -> str:
     if getattr(getattr(cell, "dtype", None), "kind", "") == "m":  # of NumPy
         return f"{cell / type(cell)(1, 's')} s"
     return str(cell)
-
-
-def units_in_cells(sheet: Sheet) -> Sheet:
-    """Return a table without a row of units below the headings: its cells have them."""
-    units = units_in(sheet.rows[0]) if sheet.rows else []
-    if not units:
-        return sheet
-    rows = [
-        [
-            f"{x} {u.strip('-')}" if x.strip() and not OWN_UNIT.search(x) else x
-            for x, u in zip(row, units, strict=True)
-        ]
-        for row in sheet.rows[1:]
-    ]
-    return sheet._replace(rows=rows, remarks=["units in the row below the headings", *sheet.remarks])
 
 
 def filled_down(sheet: Sheet, places: Collection[int]) -> Sheet:
