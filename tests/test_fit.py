@@ -505,12 +505,12 @@ def test_in_python_it_is_what_json_has() -> None:
 @pytest.mark.parametrize(
     ("table", "more", "kind", "words"),
     [
-        ({}, {}, ValueError, "cannot read the runs: m1 (0 if nothing hangs there), m2, a (or t and drop) are missing; there are none"),
+        ({}, {}, ValueError, "cannot read the runs: m1 (0 if nothing hangs there), m2, t (or a), drop are missing; there are none"),
         (3, {}, ValueError, "cannot read the runs: it is of type int; give a path, a mapping or a data frame"),
         ({"m1": [1], "m2": [2, 3]}, {}, ValueError, "cannot read the runs: its columns differ in length: 'm1' has 1 cells, 'm2' has 2 cells"),
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),
-        ({"m1": [1], "m2": [2], "a": [1], "unc": [1]}, {}, ValueError, "cannot read the runs: 'unc' may matter, and is not read; give columns='m1,m2,a,?'"),
-        ({"A": [100], "B": [110], "C": [2]}, {"columns": "m1:g,-", "m2": "110g", "drop": 1}, ValueError, "cannot read the runs: say which columns are t or a; give columns='m1:g,?,?'"),
+        ({"m1": [1], "m2": [2], "a": [1], "unc": [1]}, {}, ValueError, "cannot read the runs: 'unc' is not read, and may matter; give columns='m1,m2,a,?'"),
+        ({"A": [100], "B": [110], "C": [2]}, {"columns": "m1:g,-", "m2": "110g", "drop": 1}, ValueError, "cannot read the runs: t (or a) is missing; give columns='m1:g,?,?'"),
         ({"A": [1], "B": [2]}, {"columns": "?,?"}, ValueError, "cannot read the runs: its columns are to be decided; give columns='a,?'"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' conflicts with g, which gives it; leave one of them out"),

@@ -170,7 +170,7 @@ AGAIN = "it has columns with the names of results: 'error'; leave them out to so
         (TABLE.with_columns(m2=True), "cannot read the table: column m2 holds Boolean, not numbers"),
         (TABLE.drop("m2"), "cannot read the table: m2 is missing; there are 'id', 'm1 (g)', 'M', 'x'"),
         (TABLE.rename({"M": "M (u)"}), f"cannot read the table: column 'M (u)' has the unit 'u'; it takes {', '.join([*UNITS['mass'], *UNITS['force']])}; there are 'id', 'm1 (g)', 'm2', 'M (u)', 'x'"),
-        (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' may mean R (radius of the pulley); there are 'radius', 'm1 (g)', 'm2', 'M', 'x'"),
+        (TABLE.rename({"id": "radius"}), "cannot read the table: 'radius' (R?) is not read, and may matter; there are 'radius', 'm1 (g)', 'm2', 'M', 'x'"),
         (TABLE.rename({"id": "error"}), f"cannot read the table: {AGAIN}"),
     ],
 )  # fmt: skip

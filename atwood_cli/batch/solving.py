@@ -27,7 +27,6 @@ from ..tables.headings import (
     LONGEST_HEADING,
     MASS_NAMES,
     NOTHING_SAID,
-    UNREAD,
     Heading,
     Naming,
     Vocabulary,
@@ -36,10 +35,10 @@ from ..tables.headings import (
     is_unit,
     listed,
     named,
-    read_headings,
+    places_of,
     unit_within,
 )
-from ..tables.places import asked
+from ..tables.places import Needs, understood
 from ..tables.records import LIKE_NUMBER
 from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable
@@ -110,32 +109,13 @@ def read_columns(
     if clash := [column for column in columns if column in wanted.columns]:
         names = f"{listed(clash)}; leave them out to solve a table of results again, or rename them"
         raise Unreadable(f"it has columns with the names of results: {names}")
-    naming = wanted.naming
-    given = {x for x, text in wanted.given.items() if read_exactly(x, text).number is not None}
-    ask = partial(asked, sheet=Sheet(columns, rows), naming=naming, vocabulary=VOCABULARY, given=given)
-    ask = partial(ask, missing_of=_missing, may_matter=lambda i: bool(_meant(columns[i])))
-    if naming.is_open:
-        raise ask("its columns are to be decided")
-    try:
-        said = naming.of(columns, whole)
-        headings = read_headings(columns, VOCABULARY, said)
-    except Unreadable as error:
-        raise ask(str(error)) from None
-    if double := [heading.name for heading in headings if heading.name in wanted.given]:
-        raise SceneError(double[0], wanted.given[double[0]], "is a column of the table, too; leave one out")
-    inputs = {*given, *(heading.name for heading in headings)}
-    missing = _missing(inputs)
-    if missing and whole:
-        raise ask(f"{' and '.join(missing)} {'is' if len(missing) == 1 else 'are'} missing")
+    needs = Needs(VOCABULARY, _missing, _doubt)
+    given = {x: text for x, text in wanted.given.items() if read_exactly(x, text).number is not None}
+    headings = understood(Sheet(columns, rows), wanted.naming, needs, given, whole)
+    missing = _missing({*given, *(heading.name for heading in headings)})
     if not (headings or missing):
         raise Unreadable(f"no column holds an input; there are {listed(columns)}")
-    not_read = [i for i in range(len(columns)) if i not in (heading.place for heading in headings)]
-    for i in not_read:
-        meant = _meant(columns[i])
-        is_known = whole and {"diameter": "R"}.get(meant, meant) in inputs  # another line may lack it
-        if meant and said[i] != UNREAD and not is_known:
-            about = INPUTS[meant].meaning if meant in INPUTS else "twice R"
-            raise ask(f"column {in_quotes(columns[i])} may mean {meant} ({about})")
+    not_read = [i for i in range(len(columns)) if i not in places_of(headings)]
     has_label = wanted.conditions and columns and all(heading.place for heading in headings)
     label = [Heading(0, columns[0], LABEL)] if has_label else []
     headings += [Heading(-1, mass, mass) for mass in missing]
@@ -144,6 +124,13 @@ def read_columns(
 
 def _missing(has: Collection[str]) -> list[str]:
     return [mass for mass in MASSES if mass not in has]
+
+
+def _doubt(sheet: Sheet, place: int, has: Collection[str]) -> str:
+    """Name a column that may mean an input."""
+    meant = _meant(column := sheet.columns[place])
+    is_known = not meant or {"diameter": "R"}.get(meant, meant) in has
+    return "" if is_known else f"{named(column, place)} ({meant}?)"
 
 
 def _meant(column: str) -> str:

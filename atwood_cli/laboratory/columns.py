@@ -2,27 +2,23 @@
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from functools import partial
 from typing import Literal, NamedTuple
 
-from ..solver.scene import INPUTS, MASSES, Input, SceneError
+from ..solver.scene import INPUTS, MASSES, Input
 from ..tables.cells import EMPTY, decimal_commas_in, has_unit
 from ..tables.headings import (
     LONGEST_HEADING,
     MASS_NAMES,
-    UNREAD,
     Heading,
     Naming,
     Vocabulary,
-    is_unit,
     may_be_mass,
     meaning_of,
     named,
-    read_headings,
+    places_of,
     recognised,
-    unit_within,
 )
-from ..tables.places import asked
+from ..tables.places import Needs, understood
 from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable
 
@@ -65,54 +61,26 @@ def columns_of(sheet: Sheet, naming: Naming, given: Mapping[str, Input]) -> Colu
     for number, row in enumerate(sheet.rows, 1):
         if sum(cell[:1].isalpha() for cell in row) > 1 and len(recognised(row, VOCABULARY)) > 1:
             raise Unreadable(f"row {number} has headings of a second table; give it a file of its own")
-    may_matter = partial(_may_matter, sheet.columns)
-    ask = partial(asked, sheet=sheet, naming=naming, vocabulary=VOCABULARY, given=given)
-    ask = partial(ask, missing_of=_missing, may_matter=may_matter)
-    if naming.is_open:
-        raise ask("its columns are to be decided")
-    try:
-        said = naming.of(sheet.columns)
-        headings = read_headings(sheet.columns, VOCABULARY, said)
-    except Unreadable as error:
-        if naming.words:
-            raise SceneError("columns", None, f"does not fit: {error}") from None
-        raise ask(str(error)) from None
-    places = [column.place for heading in headings for column in (heading, heading.u) if column]
-    numbers = [] if 0 in places or not sheet.columns else sheet.numbers
+    first, is_headed = [row[0] for row in sheet.rows], len(recognised(sheet.columns, VOCABULARY)) > 1
+    if not (naming.words or is_headed) and len(recognised(first, VOCABULARY)) > 1:
+        raise Unreadable("its runs are columns: make each run a row, below headings, as m1 (g),m2 (g),t (s)")
+    if sum(bool(re.fullmatch(r"\d*[.,]\d+", column)) for column in sheet.columns) > 1:
+        sheet = sheet._replace(
+            remarks=[*sheet.remarks, f"if headings that are numbers are loads, {ONE_LOAD}"]
+        )
+    typed = {x: str(read.given) for x, read in given.items() if read.given is not None}
+    headings = understood(sheet, naming, Needs(VOCABULARY, _missing, _doubt), typed)
+    places = places_of(headings)
+    numbers = [] if 0 in places else sheet.numbers
     others = [i for i in range(1 if numbers else 0, len(sheet.columns)) if i not in places]
     unread = [i for i in others if sheet.has_numbers(i) or len({row[i].strip() for row in sheet.rows}) > 1]
-    names = {heading.name for heading in headings}
-    if why := _lacking(names, given):
-        if len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
-            raise Unreadable(f"{why}: make each run a row, below headings, as m1 (g),m2 (g),t (s)")
-        if sum(bool(re.fullmatch(r"\d*[.,]\d+", column)) for column in sheet.columns) > 1:
-            why += f"; if headings that are numbers are loads, {ONE_LOAD}"
-        raise ask(why)
-    not_said = [i for i in unread if sheet.has_numbers(i) and said[i] != UNREAD]
-    rivals = {i: own.place for i in not_said for own in headings if _is_alike(sheet.columns[i], own)}
-    if doubts := [i for i in not_said if i in rivals or may_matter(i)]:
-        which = ", ".join(named(sheet.columns[i], i) for i in doubts)
-        why = f"{which} may matter, and {'is' if len(doubts) == 1 else 'are'} not read"
-        raise ask(why, doubtful={*rivals, *rivals.values()})
-    kind: Kind = "a" if "a" in names else "time"
+    kind: Kind = "a" if any(own.name == "a" for own in headings) else "time"
     if kind == "a":  # a height has no effect
         headings = [heading for heading in headings if heading.name != "drop"]
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     with_units = [x for x in places if all(row[x] in EMPTY or has_unit(row[x]) for row in sheet.rows)]
     rows = numbers or range(1, len(sheet.rows) + 1)
     return Columns(headings, kind, rows, bool(numbers), comma, with_units, unread)
-
-
-def _lacking(names: Collection[str], given: Mapping[str, Input]) -> str:
-    """Return what runs lack, in words. Raises SceneError for what the table and the options both have."""
-    if double := [x for x in given if x in names and given[x].given is not None]:
-        rule = f"is not needed, as the table has {double[0]}; leave it out"
-        raise SceneError(double[0], given[double[0]].given, rule)
-    missing = ", ".join(_missing({*names, *given})).replace("m1", "m1 (0 if nothing hangs there)")
-    if missing == "time, a":
-        return "say which columns are t or a"
-    missing = missing.replace("time, a, drop", "a (or t and drop)").replace("time, a", "t (or a)")
-    return f"{missing} {'are' if ', ' in missing else 'is'} missing" if missing else ""
 
 
 def _missing(has: Collection[str]) -> list[str]:
@@ -122,21 +90,16 @@ def _missing(has: Collection[str]) -> list[str]:
     return missing if {"a", "drop"} & {*has} else [*missing, "drop"]
 
 
-def _may_matter(columns: Sequence[str], place: int) -> bool:
-    """Decide whether a column of numbers may be a mass, an uncertainty or a repeat, or has no effect."""
-    column, before = columns[place], columns[place - 1] if place else ""
+def _doubt(sheet: Sheet, place: int, _: Collection[str]) -> str:
+    """Name a column of numbers that may be a mass, an uncertainty or a repeat, or has no effect."""
+    if not sheet.has_numbers(place) or (place == 0 and sheet.numbers):
+        return ""
+    column, before = sheet.columns[place], sheet.columns[place - 1] if place else ""
     if place and not column.strip():  # as below a heading that is merged
         own = meaning_of(before, VOCABULARY)
-        return own.name in MEASURED if own else not before.strip() and _may_matter(columns, place - 1)
-    return column in INPUTS or may_be_mass(column) or bool(LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING]))
-
-
-def _is_alike(column: str, own: Heading) -> bool:
-    """Decide whether a heading has the name of a quantity that is read, too, so that one may be computed."""
-    words, unit = re.split(r"[\W_]+", column[:LONGEST_HEADING]), unit_within(column, own)
-    is_of_others = own.number or own.name in (
-        *MASSES,
-        *CONDITIONS,
-    )  # as a mean of repeats, or a sum of masses
-    has_name = own.name in map(VOCABULARY.names.get, words)
-    return has_name and not is_of_others and (not unit or is_unit(unit, own))
+        is_merged = not before.strip() and _doubt(sheet, place - 1, ()) != ""
+        may_matter = own.name in MEASURED if own else is_merged
+    else:
+        may_matter = column in INPUTS or may_be_mass(column)
+        may_matter |= bool(LIKE_UNCERTAINTY.search(column[:LONGEST_HEADING]))
+    return named(column, place) if may_matter else ""

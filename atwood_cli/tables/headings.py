@@ -159,6 +159,11 @@ def read_headings(
     return list(headings.values())
 
 
+def places_of(headings: Iterable[Heading]) -> list[int]:
+    """Return the places of columns that are read, with those of uncertainties."""
+    return [own.place for heading in headings for own in (heading, heading.u) if own]
+
+
 def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[str, str] = {}) -> list[str]:
     """Return the columns that the vocabulary knows, or that the user has named."""
     said = [named.get(without_blanks(column), column) for column in columns]

@@ -2,12 +2,17 @@
 
 import re
 import shlex
-from collections.abc import Callable, Collection, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
+from typing import NamedTuple
+from unicodedata import normalize
 
 from ..numbers.text import without_blanks
 from ..reading.units import symbol_of
+from ..solver.scene import MASSES, SceneError
 from .headings import (
+    LONGEST_HEADING,
     OPEN,
     UNREAD,
     Heading,
@@ -16,6 +21,8 @@ from .headings import (
     is_unit,
     listed,
     meaning_of,
+    named,
+    places_of,
     read_headings,
     unit_within,
 )
@@ -29,8 +36,21 @@ SEVERAL = re.compile(r"\d\s+[-+.,]?\d")
 NO_SUCH_NUMBERS = (
     "no column has such numbers: write a heading above each, as m1 (g),m2 (g), and one number a cell"
 )
+LACKING = {"m1": "m1 (0 if nothing hangs there)", "time": "t (or a)"}
+"""What is missing, in other words than its name."""
 A_NAMING = r""" --(?:\w+ '\?'|(?:columns?|label)[ =](?:'[^']*'|"[^"]*"|[^\s'"])+)"""
 """An option of a command line that says what columns are, or is open."""
+
+
+class Needs(NamedTuple):
+    """What a command needs of a table: its vocabulary, and what is missing beside names that are there.
+
+    ``doubt`` names the column in a place if it may matter beside them, and is "" else.
+    """
+
+    vocabulary: Vocabulary
+    missing: Callable[[Collection[str]], Sequence[str]]
+    doubt: Callable[[Sheet, int, Collection[str]], str]
 
 
 class NotUnderstood(Unreadable):
@@ -68,21 +88,62 @@ class NotUnderstood(Unreadable):
         return ["", *map(str.rstrip, lines), "", *guess, f"  {hint}", "", f"  {typed}"]
 
 
-def asked(
+def understood(
+    sheet: Sheet, naming: Naming, needs: Needs, given: Mapping[str, str], whole: bool = True
+) -> list[Heading]:
+    """Return the columns that hold quantities, beside what is ``given`` for all rows.
+
+    A table that is not ``whole`` may lack some. Raises NotUnderstood, Unreadable, SceneError.
+    """
+    if naming.is_open:
+        raise _asked("its columns are to be decided", sheet, naming, needs, given)
+    try:
+        said = naming.of(sheet.columns, whole)
+        headings = read_headings(sheet.columns, needs.vocabulary, said)
+    except Unreadable as error:
+        if naming.words:
+            raise SceneError("columns", None, f"does not fit: {error}") from None
+        raise _asked(str(error), sheet, naming, needs, given) from None
+    has, places = {own.name for own in headings}, places_of(headings)
+    if double := [x for x in given if x in has]:
+        raise SceneError(double[0], given[double[0]], "is a column of the table, too; leave one out")
+    has = {*given, *has} if whole else set()
+    which, what = [LACKING.get(x, x) for x in needs.missing(has) if x != "a"] if whole else [], "missing"
+    rivals = dict[int, int]()
+    if not which:
+        unread = [i for i, word in enumerate(said) if i not in places and word != UNREAD]
+        rivals = {
+            i: own.place for i in unread for own in headings if _is_alike(sheet, i, own, needs.vocabulary)
+        }
+        doubts = {i: needs.doubt(sheet, i, has) for i in unread}
+        doubts |= {i: named(sheet.columns[i], i) for i in rivals}
+        which, what = [doubt for doubt in doubts.values() if doubt], "not read, and may matter"
+    if which:
+        are, doubtful = "is" if len(which) == 1 else "are", {*rivals, *rivals.values()}
+        raise _asked(f"{', '.join(which)} {are} {what}", sheet, naming, needs, given, doubtful)
+    return headings
+
+
+def _is_alike(sheet: Sheet, place: int, own: Heading, names: Mapping[str, str]) -> bool:
+    """Decide whether a heading has the name of what was measured, too, so that either may be computed."""
+    column = sheet.columns[place]
+    words, unit = re.split(r"[\W_]+", column[:LONGEST_HEADING]), unit_within(column, own)
+    has_name = own.name in map(names.get, words) and sheet.has_numbers(place)
+    return has_name and (not unit or is_unit(unit, own))
+
+
+def _asked(
     why: str,
     sheet: Sheet,
     naming: Naming,
-    vocabulary: Vocabulary,
+    needs: Needs,
     given: Collection[str],
-    missing_of: Callable[[Collection[str]], Sequence[str]],
-    may_matter: Callable[[int], bool],
     doubtful: Collection[int] = (),
 ) -> Unreadable:
     """Return the error that lists all columns, with words for those that are known or can be guessed.
 
-    ``missing_of`` returns what is missing beside names, as those ``given`` for all rows, and ``may_matter``
-    decides on a place. Those that are ``doubtful`` are open, even if they are read. What no column may hold
-    is an option.
+    What no column may hold is an option. Headings that are equal but for a number are m1 and m2, or repeats.
+    Columns that are ``doubtful`` are open, even if they are read.
     """
     why = "; ".join([why, *sheet.remarks])
     if not sheet.rows:  # as of frames and NDJSON, whose columns have names
@@ -90,40 +151,56 @@ def asked(
     said, words = [*sheet.columns], [UNREAD] * len(sheet.columns)
     with suppress(Unreadable):
         said = naming.of(sheet.columns)
-    read, headings = [*words], list[Heading]()
-    meant = [meaning_of(text, vocabulary) for text in said]
+    read, headings, repeated = [*words], list[Heading](), needs.vocabulary.repeated
+    meant = [meaning_of(text, needs.vocabulary) for text in said]
     for i in (i for i, own in enumerate(meant) if own):  # what cannot be read beside those before it is open
         read[i] = said[i]
         try:
-            headings = read_headings(sheet.columns, vocabulary, read)
+            headings = read_headings(sheet.columns, needs.vocabulary, read)
         except Unreadable:
             read[i], words[i] = UNREAD, OPEN
     for own in headings:
-        words[own.place] = _word(own, own.name, own.number) + (OPEN if own.place in doubtful else "")
+        word = _word(own, own.name, own.number) + (OPEN if own.place in doubtful else "")
+        words[own.place] = OPEN if own.name in given else word
         if own.u:
             words[own.u.place] = _word(own.u, own.name, f"{own.number}_err")
-    missing = missing_of({*given, *(own.name for own in meant if own)})
+    missing = needs.missing({*given, *(own.name for own in meant if own)})
     left = [i for i, word in enumerate(words) if word == UNREAD and sheet.has_numbers(i)]
     left = [i for i in left if i or not sheet.numbers]
+    units = _guesses(sheet, left, missing)
+    is_measured = any(units.get(x) for x in repeated)
+    lacking = [x for x in missing if not (units[x] or (x in repeated and is_measured))]
+    lacking = [x for x in lacking if x != "drop" or not units.get("a")]  # without a time no height is needed
+    is_unclear = {*lacking} - {"drop"}
+    for i in left:
+        fits = [x for x in missing if i in units[x]]
+        may_matter = i in doubtful or (said[i] != UNREAD and needs.doubt(sheet, i, ()))
+        if len(fits) == 1:
+            unit, is_sure = units[fits[0]][i], len(units[fits[0]]) == 1 and not may_matter
+            words[i] = _short(fits[0]) + (f":{unit}" if unit else "") + ("" if is_sure else OPEN)
+        elif fits or is_unclear or may_matter:
+            words[i] = OPEN
+    is_by_blanks = len(words) == 1 and any(SEVERAL.search(row[0]) for row in sheet.rows)
+    if is_by_blanks or (is_unclear & {*repeated} and OPEN not in words):
+        return Unreadable(f"{why}; {NO_SUCH_NUMBERS}")
+    is_open = OPEN in [words[i] for i in left] and [*missing] != ["drop"]
+    return NotUnderstood(why, sheet, words, [] if is_open else [x for x in lacking if x not in repeated])
+
+
+def _guesses(sheet: Sheet, left: Sequence[int], missing: Sequence[str]) -> dict[str, dict[int, str]]:
+    """Return the places that may hold what is missing, each with its unit."""
     units = {x: {i: unit for i in left if (unit := unit_of_column(sheet, i, x))} for x in missing}
     if units.get("time") and units.get("a"):  # one may be computed from the other
         units["a" if units.get("drop", " ") else "time"] = {}
-    options = [x for x in missing if not units[x] and x not in vocabulary.repeated]
-    options = [x for x in options if x != "drop" or not units.get("a")]  # without a time no height is needed
-    nothing_measured = not any(units.get(x, " ") for x in ("time", "a"))
-    is_unclear = {*options} - {"drop"} or nothing_measured
-    for i in left:
-        fits = [x for x in missing if i in units[x]]
-        if len(fits) == 1:
-            is_only = len(units[fits[0]]) == 1 and not may_matter(i)
-            words[i] = f"{_short(fits[0])}:{units[fits[0]][i]}{'' if is_only else OPEN}"
-        elif fits or is_unclear or i in doubtful or (said[i] != UNREAD and may_matter(i)):
-            words[i] = OPEN
-    is_by_blanks = len(words) == 1 and any(SEVERAL.search(row[0]) for row in sheet.rows)
-    if is_by_blanks or (nothing_measured and OPEN not in words):
-        return Unreadable(f"{why}; {NO_SUCH_NUMBERS}")
-    is_open = OPEN in [words[i] for i in left] and [*missing] != ["drop"]
-    return NotUnderstood(why, sheet, words, [] if is_open else options)
+    stems = [re.sub(r"\d", "", normalize("NFKC", column)) for column in sheet.columns]
+    counts = Counter(stems[i] for i in left)
+    alike = [i for i in left if counts[stems[i]] > 1 and re.search(r"[^\W\d_]", stems[i])]
+    if "time" in missing and not units["time"] and not units["a"]:
+        units["time"] = {i: "" for i in alike if not any(i in places for places in units.values())}
+    masses = [i for i in alike if i in units.get("m1", {}) and i in units.get("m2", {})]
+    if len(masses) == 2:
+        units |= {mass: {i: units[mass][i]} for mass, i in zip(MASSES, masses, strict=True)}
+    return units
 
 
 def unit_of_column(sheet: Sheet, place: int, name: str) -> str:
