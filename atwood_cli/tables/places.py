@@ -112,9 +112,9 @@ def understood(
     rivals = dict[int, int]()
     if not which:
         unread = [i for i, word in enumerate(said) if i not in places and word != UNREAD]
-        rivals = {
-            i: own.place for i in unread for own in headings if _is_alike(sheet, i, own, needs.vocabulary)
-        }
+        names = needs.vocabulary.names
+        measured = [own for own in headings if own.name in needs.vocabulary.repeated and not own.number]
+        rivals = {i: own.place for i in unread for own in measured if _is_alike(sheet, i, own, names)}
         doubts = {i: needs.doubt(sheet, i, has) for i in unread}
         doubts |= {i: named(sheet.columns[i], i) for i in rivals}
         which, what = [doubt for doubt in doubts.values() if doubt], "not read, and may matter"
