@@ -289,6 +289,8 @@ ASKED = [
     ("fit --drop 1m", "m1 (g);m2 (g);acc. [m/s²];durée [s]\n90;95;0,2;3,2\n90;99;0,4;2,3\n", "t (or a) is missing", "m1:g,m2:g,-,t:s"),
     ("fit", "m1 (g);m2 (g);durée [s];acc. [m/s²]\n90;95;3,2;0,2\n90;99;2,3;0,4\n", "t (or a), drop are missing", "m1:g,m2:g,-,a:m/s2"),
     ("fit --drop 60cm", "m1 (g);m2 (g);acc. [m/s²]\n90;95;0,2\n90;99;0,4\n", "t (or a) is missing", "m1:g,m2:g,a:m/s2"),
+    ("fit --drop 0.7", "Scheibe;61 g;\nLi (g);Re (g);t (s)\n150;165;1,9\n150;175;1,4\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,t:s"),
+    ("fit --m1 0 --m2 9g --drop 1 --columns '?'", "no.\tt (s)\tt ideal (s)\n1\t4\n2\t3\n", "its columns are to be decided", "-,t:s"),
     ("batch", "m1,m2,Kąt [°]\n1,3,270\n", "'Kąt [°]' (wrap?) is not read, and may matter", "m1,m2,?"),
 ]  # fmt: skip
 """Tables that are not understood: why, and the words of --columns to type, with options that are missing behind them."""
@@ -465,6 +467,18 @@ def test_a_title_within_the_rows_begins_other_runs(read: Any) -> None:
         read(table, words="m1:g+,m2:g+,t")
     assert read(table.replace("Plan B,,,", "50,53,,jammed"), words="m1:g+,m2:g+,t").rows == [[1, 2, 4]]
     assert read("Lauf,m1 (g),m2 (g),t\n1,50,53,3\n2,50,56,2\nmit Öl,,,\n").rows == [[1], [2]]
+
+
+def test_a_title_with_a_number_is_no_row(read: Any) -> None:
+    """It was the first row of runs, or a heading whose unit was read, in the command that was printed itself."""
+    title, table = "Scheibe (g),61,\n", "A,B,t\n.15,,1.9\n,,1.8\n.16,.17,1.4\n"
+    runs = read(title + table.replace("15,", "15,.165"), words="m1+,m2+,t")
+    assert [*runs.given["m1"]] == [0.15, 0.16]
+    assert ABOVE in runs.remarks[0]
+    with pytest.raises(Unreadable, match="row 1: m2 is missing"):
+        read(title + table, words="m1+,m2+,t")
+    headed = "Massen (g),,Zeit (ms)\n" + table.replace("15,", "150,165")
+    assert read(headed, words="m1:g+,m2:g+,t").values[0] == 0.0019
 
 
 def test_ndjson_has_names() -> None:

@@ -15,8 +15,6 @@ from .sources import LONGEST_RECORD, Unreadable
 SEPARATORS = ",\t;"
 MOST_ABOVE = 40
 """The most rows of titles above the headings."""
-MOST_HEADS = 2
-"""The most rows of headings."""
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d+(?!\d|st|nd|rd|th)")
 QUOTATION = 'has a quotation mark that is left open or out of place; write it "like ""this"""'
 
@@ -70,19 +68,25 @@ def find_header(
     """Find the headings of a table, and its separator, by which most are known, or else are words.
 
     The header is the first row with two that are ``known``, or else one among several cells, or else with
-    most words; a row of units below belongs to it. With ``decisive`` columns, the rows above the first number
-    there are headings, perhaps none.
+    most words; a row of units below belongs to it. With ``decisive`` columns, it is the last row of words
+    there above the numbers, perhaps none.
     """
     csv.field_size_limit(LONGEST_RECORD)
     lines = [line for line in islice(StringIO(text), MOST_ABOVE) if line.strip()]
     usual = next((x for x in ";\t" if 2 * sum(x in line for line in lines) > len(lines)), ",")
     if decisive:
-        rows = (cells for *_, cells in islice(records_of(text, usual), MOST_ABOVE) if any(cells))
-        for first, row in enumerate(rows):
-            if any(LIKE_NUMBER.match(row[x]) for x in decisive if x < len(row)):
-                above = max(first - MOST_HEADS, 0)
-                return Layout(usual, above, first - above)
-        raise GoesOn("it has no numbers in the columns that --columns reads")
+        rows = [cells for *_, cells in islice(records_of(text, usual), MOST_ABOVE) if any(cells)]
+        read = [[row[x].strip() for x in decisive if x < len(row)] for row in rows]
+        counts = [sum(bool(LIKE_NUMBER.match(cell)) for cell in cells) for cells in read]
+        if not any(counts):
+            raise GoesOn("it has no numbers in the columns that --columns reads")
+        full = counts.index(max(counts))
+        worded = [i for i in range(full) if not counts[i] and all(read[i])]  # a title above may have numbers
+        first = worded[-1] + 1 if worded else next(i for i, count in enumerate(counts) if count)
+        above = max(first - 1, 0)
+        if above and not counts[above - 1] and any(rows[above - 1][1:]):
+            above -= 1
+        return Layout(usual, above, first - above)
     headers: list[tuple[tuple[int, ...], Layout]] = []
     for separator in SEPARATORS:
         with suppress(csv.Error):

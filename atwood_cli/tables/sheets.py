@@ -150,7 +150,7 @@ def _rows(text: str, layout: Layout, naming: Naming) -> tuple[list[str], list[li
     first = layout.above + layout.heads
     records = [cells for *_, cells in records_of(text, layout.separator) if any(cells)]
     rows = [row for row in records[first:] if "".join(row).strip()]
-    by_heading = layout.heads and not naming.decisive
+    by_heading = layout.heads and not (naming.decisive or naming.is_open)
     width = max(map(len, records[layout.above : first] if by_heading else records), default=0)
     if not width:
         raise Unreadable("it is empty")
