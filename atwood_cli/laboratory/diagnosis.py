@@ -135,11 +135,12 @@ def _as_good(best: Line) -> float:
 def _repairs(fit: Fitted, freed: Mapping[str, Fitted]) -> list[Fitted]:
     """Return the freed quantities that repair a fit, the best first.
 
-    An F test judges what the best takes off χ². With it are all that are as good. An inertia that is given
-    without an uncertainty is repaired, too, if the interval of 95 % excludes it.
+    An F test judges what the best takes off χ², if two degrees of freedom are left. With it are all that are
+    as good. An inertia that is given without an uncertainty is repaired, too, if the interval of 95 % excludes
+    it.
     """
     changes = {x: abs(one.values[x] - fit.values[x]) / one.line.u[-1] for x, one in freed.items()}
-    causes = [one for x, one in freed.items() if changes[x] > 1 and _is_plausible(one)]
+    causes = [one for x, one in freed.items() if one.line.dof > 1 and changes[x] > 1 and _is_plausible(one)]
     if not causes:
         return []
     causes.sort(key=lambda cause: cause.line.chi2)
