@@ -127,7 +127,7 @@ def _with_results(runs: Runs, used: Selection, shared: Conditions, names: Sequen
     spread = _with_derived(dict(zip(names, line.u, strict=True)), names, shared)
     for x, value in _with_derived(fit.values, names, shared).items():
         u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in ends))
-        results[x] = Result(value, u, (value - line.times * u, value + line.times * u))
+        results[x] = Result.of(value, u, line.times * u)
         if x in names and is_negative(x, value, u, line.times):
             raise CannotSeparate(f"{equation(x, value, u)} is negative: {contradiction(fit)}")
     if runs.kind == "time" and not moves(fit.data, fit.values).all():

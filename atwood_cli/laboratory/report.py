@@ -20,8 +20,8 @@ from ..solver.scene import MASSES, parameter_of
 from .columns import MEASURED
 from .diagnosis import RARE, SELDOM
 from .estimate import Fitted, data_of, expected, moves
-from .results import QUANTITIES, RESULTS, USUAL, Fit, cut, equation, published, rounded
-from .statistics import NORMAL_DOF
+from .results import QUANTITIES, RESULTS, USUAL, Fit, as_determined, cut, equation, published, rounded
+from .statistics import NORMAL_DOF, Line
 
 NOT_FITTED = "no value, as it is given, was not to be fitted, or the runs do not determine it"
 
@@ -53,7 +53,7 @@ def _scatter(fit: Fitted) -> str:
         return "No repeats show the scatter of measurements; only the residuals do."
     probability = f"p = {rounded(p_value)}" if p_value >= 0.001 else "p < 0.001"
     test = f" by an F({line.dof}, {data.known_dof:.0f}) test" if data.known_dof < NORMAL_DOF else ""
-    chi2 = f"χ² = {rounded(line.chi2, 3)}, {counted(line.dof, 'degree')} of freedom, {probability}{test}"
+    chi2 = f"χ² = {rounded(_chi2(line), 3)}, {counted(line.dof, 'degree')} of freedom, {probability}{test}"
     verb = "agree with the fit within chance, by"
     if p_value < SELDOM:
         verb = "scatter more than"
@@ -63,6 +63,11 @@ def _scatter(fit: Fitted) -> str:
         verb = "scatter less than"
     between = f"; the scatter between runs is taken as one of the {data.varying}s" if line.between else ""
     return f"The runs {verb} their {'uncertainties' if data.stated else 'repeats'} ({chi2}){between}."
+
+
+def _chi2(line: Line) -> float:
+    """Return χ², of which rounding errors make a little also where it is 0."""
+    return as_determined(line.chi2, max(line.chi2, 1e-3))
 
 
 def _capital(words: str) -> str:
@@ -94,15 +99,16 @@ def results_of(fit: Fitted) -> Fit:
     """Return all of a fit by name, with its sentences: first the verdict and the warnings."""
     known = fit.data.varying != "value"
     unit, of_unit = ("kg", abs(fit.values["gravity"])) if fit.data.varying == "force" else ("s", 1.0)
+    between = as_determined(sqrt(fit.line.between) / of_unit, sqrt(fit.line.between) / of_unit)
     return Fit(
         **{name: fit.results[name].value if name in fit.results else None for name in QUANTITIES},
         uncertainty={name: result.uncertainty for name, result in fit.results.items()},
         interval={name: list(result.interval) for name, result in fit.results.items()},
         correlation=_correlation(fit.line.covariance),
-        chi2=fit.line.chi2 if known else None,
+        chi2=_chi2(fit.line) if known else None,
         dof=fit.line.dof,
         interval_dof=fit.line.t_dof if fit.line.t_dof < NORMAL_DOF else None,
-        between_runs=sqrt(fit.line.between) / of_unit if known and fit.line.dof else None,
+        between_runs=between if known and fit.line.dof else None,
         between_runs_unit=unit if known and fit.line.dof else None,
         runs=_records(fit),
         notes=[*chain(*notes_of(fit))],
@@ -136,7 +142,7 @@ def _correlation(covariance: Any) -> float | None:
     """Return the correlation of the two fitted quantities that have most of it."""
     u = np.sqrt(covariance.diagonal())
     pairs = (covariance / np.outer(u, u))[np.triu_indices(len(u), 1)]
-    return float(max(pairs, key=abs)) if len(pairs) else None
+    return as_determined(float(max(pairs, key=abs)), 1.0) if len(pairs) else None
 
 
 def _records(fit: Fitted) -> list[dict[str, Any]]:
@@ -153,14 +159,12 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
         fall = np.where(measured > delay, measured - delay, np.nan)
         a, ideal_a = (physics.acceleration_of_fall(runs.given["drop"], t) for t in (fall, ideal - delay))
         u_a = 2 * a * u / fall
-    columns = {
-        **runs.given,
-        runs.kind: measured,
-        "u": u,
-        "expected": ideal,
-        "residual": (measured - ideal) / u,
-    }
-    columns |= {"a": a, "u_a": u_a, "expected_a": ideal_a}
+    of_time, of_a = fit.line.sigma.min(), np.nanmin(u_a, initial=np.inf)
+    computed = {"u": (u, of_time), "expected": (ideal, of_time), "residual": ((measured - ideal) / u, 1.0)}
+    computed |= {"a": (a, of_a), "u_a": (u_a, of_a), "expected_a": (ideal_a, of_a)}
+    columns = {**runs.given, runs.kind: measured}
+    for x, (column, scale) in computed.items():
+        columns.setdefault(x, np.array([as_determined(value, scale) for value in column.tolist()]))
     return [
         {"rows": " ".join(map(str, rows))}
         | {x: None if np.isnan(column[i]) else float(column[i]) for x, column in columns.items()}

@@ -1,6 +1,7 @@
 """The quantities that a fit gives, and their numbers as published: cut where their uncertainty begins."""
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -50,12 +51,24 @@ class Result(NamedTuple):
     uncertainty: float
     interval: tuple[float, float]
 
+    @classmethod
+    def of(cls, value: float, uncertainty: float, half: float) -> "Result":
+        """Return a result whose interval reaches ``half`` its width to both sides, as far as it is determined."""
+        numbers = (value, uncertainty, value - half, value + half)
+        value, u, low, high = (as_determined(number, uncertainty) for number in numbers)
+        return cls(value, u, (low, high))
+
 
 def published(value: float, uncertainty: float, interval: Sequence[float] = ()) -> tuple[str, str]:
     """Return a value ± its uncertainty, and its interval, all cut at the second digit of the uncertainty."""
     round_ = rounding_to_uncertainty(Fraction(uncertainty))
     value_, u, *ends = (round_(Fraction(x)) for x in (value, uncertainty, *interval))
     return with_uncertainty(value_, u, ends)
+
+
+def as_determined(value: float, scale: float) -> float:
+    """Return a value rounded at the seventh digit of an uncertainty: beyond, machines differ."""
+    return round(value, 6 - Decimal(scale).adjusted()) + 0.0
 
 
 def equation(name: str, value: float, uncertainty: float) -> str:

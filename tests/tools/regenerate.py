@@ -136,11 +136,9 @@ KEPT = [
 
 
 def essence(text: str) -> object:
-    """What must stay the same for each version of a library: of a picture the words, of a fit ten digits."""
+    """What must stay the same for each version of a library: of a picture the words."""
     if "<svg" in text:
         return labels(text)
-    if "atwood fit" in text:
-        text = re.sub(r"\d+\.\d{12,}", lambda number: f"{float(number[0]):.10g}", text)
     return text.replace("argument(s)", "arguments")  # as typer words it, by its version
 
 
