@@ -34,6 +34,8 @@ from .statistics import CannotSeparate, Line, distances_from, judge_of_repeats, 
 
 OUTLIER_LEVEL = 0.012
 """The chance of a false alarm in a sound set: once among repeats, once among runs. It is from simulations."""
+FEW_REPEATS = 3
+"""With fewer degrees of freedom repeats do not judge each other."""
 SELDOM = 0.05
 """The p value below which runs are said to scatter more than their repeats."""
 RARE = 0.01
@@ -135,9 +137,9 @@ def _as_good(best: Line) -> float:
 def _repairs(fit: Fitted, freed: Mapping[str, Fitted]) -> list[Fitted]:
     """Return the freed quantities that repair a fit, the best first.
 
-    An F test judges what the best takes off χ², if two degrees of freedom are left. With it are all that are
-    as good. An inertia that is given without an uncertainty is repaired, too, if the interval of 95 % excludes
-    it.
+    An F test judges what the best takes off χ², if it leaves two degrees of freedom. With it are all that are
+    as good. An inertia that is given without an uncertainty is repaired, too, if the interval of 95 %
+    excludes it.
     """
     changes = {x: abs(one.values[x] - fit.values[x]) / one.line.u[-1] for x, one in freed.items()}
     causes = [one for x, one in freed.items() if one.line.dof > 1 and changes[x] > 1 and _is_plausible(one)]
@@ -196,19 +198,27 @@ Distances = dict[int, float]
 
 
 def _far(fit: Fitted) -> tuple[Distances, Distances, Fitted, Line]:
-    """Return outliers among repeats, and among runs; the fit without the first, the line without both."""
-    cells, clean = _far_repeats(fit), fit
+    """Return outliers among repeats, and among runs; the fit without the first, the line without both.
+
+    Few repeats, which do not show their own scatter, are judged as runs.
+    """
+    runs, run_of, cells, clean = fit.runs, fit.runs.run, Distances(), fit
     with suppress(CannotSeparate):
-        clean = _without(fit, cells)
+        if 0 < len(run_of) - len(runs.rows) < FEW_REPEATS:
+            given, u = ({x: column[run_of] for x, column in some.items()} for some in (runs.given, runs.u))
+            single = runs._replace(
+                given=given, u=u, left_out=runs.left_out[run_of], run=np.arange(len(run_of))
+            )
+            clean, run_of = best_fit(single, fit.used[run_of], fit.shared, fit.names), single.run
+        elif cells := _far_repeats(fit):
+            clean = _without(fit, cells)
     far, line = _far_runs(clean)
-    rows = {int(i): distance for run, distance in far.items() for i in np.flatnonzero(fit.runs.run == run)}
+    rows = {int(i): distance for run, distance in far.items() for i in np.flatnonzero(run_of == run)}
     return cells, rows, clean, line
 
 
 def _without(fit: Fitted, far: Distances) -> Fitted:
     """Return the fit without the measurements at these places. Raises CannotSeparate."""
-    if not far:
-        return fit
     old, kept = fit.runs, np.delete(np.arange(len(fit.runs.values)), [*far])
     runs = old._replace(values=old.values[kept], u_values=old.u_values[kept], run=old.run[kept])
     used = fit.used & (np.bincount(runs.run, minlength=len(fit.used)) > 0)

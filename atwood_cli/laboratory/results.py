@@ -53,7 +53,7 @@ class Result(NamedTuple):
 
     @classmethod
     def of(cls, value: float, uncertainty: float, half: float) -> "Result":
-        """Return a result whose interval reaches ``half`` its width to both sides, as far as it is determined."""
+        """Return a result whose interval has this half width, by the digits that are determined."""
         numbers = (value, uncertainty, value - half, value + half)
         value, u, low, high = (as_determined(number, uncertainty) for number in numbers)
         return cls(value, u, (low, high))

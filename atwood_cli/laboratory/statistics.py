@@ -87,15 +87,14 @@ def fit_line(J: Any, y: Column, known: Column, scale: Column, known_dof: float =
     """Return the weighted least squares. Raises CannotSeparate.
 
     A known variance is taken as it is. If χ² is more than n - p, Paule and Mandel's v makes it equal to that,
-    and t has n - p degrees of freedom; else v is 0, and t has those of the known variance.
+    and t has n - p degrees of freedom; else v is 0, and t has those of the known variance as well.
     """
-    dof, between, t_dof = len(y) - int(J.shape[1]), 0.0, known_dof
+    dof, between = len(y) - int(J.shape[1]), 0.0
     chi2 = _solved(J, y, known)[2]
     if dof and chi2 > dof:
         most = 1.001 * _solved(J, y, scale)[2] / dof  # χ² is less than n - p there
         between = brentq(lambda v: 1 - dof / _solved(J, y, known + v * scale)[2], 0, most, xtol=1e-15 * most)
-        t_dof = dof
-    variance = known + between * scale
+    variance, t_dof = known + between * scale, dof + (0.0 if between else known_dof)
     b, covariance, _ = _solved(J, y, variance)
     return Line(J, y, known, scale, known_dof, b, covariance, np.sqrt(variance), dof, t_dof, chi2, between)
 
@@ -148,8 +147,8 @@ def outliers(judge: Judge, places: Sequence[int] | Places, free: int, level: flo
 def distances_from(line: Line, kept: Selection) -> tuple[Column, Any]:
     """Judge the values of a line by a line of those ``kept``.
 
-    The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite. But few
-    runs that happen to agree may hide a scatter between runs: they show it by little more than their own.
+    The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite, but
+    few runs may agree by chance, and hide the scatter between runs: at most ``MORE_DOF`` above their own.
     """
     J, y, known, scale = line[:4]
     others = line.part(kept)
@@ -158,7 +157,7 @@ def distances_from(line: Line, kept: Selection) -> tuple[Column, Any]:
     own = known + between
     spread = np.maximum(own + np.where(kept, -1, 1) * of_line, LEAST_SHARE * own)
     share = between / own
-    dof = 1 / (share**2 / others.t_dof + (1 - share) ** 2 / line.known_dof)
+    dof = 1 / (share**2 / others.dof + (1 - share) ** 2 / line.known_dof)
     return (y - J @ others.coefficients) / np.sqrt(spread), np.minimum(dof, others.dof + MORE_DOF)
 
 
