@@ -56,36 +56,25 @@ MOST_KINDS = 50
 CHECK = "check masses, heights, measurements, their units and signs"
 
 
-def diagnosed(fit: Fitted, is_mixed: bool) -> Fitted:
+def diagnosed(fit: Fitted) -> Fitted:
     """Return a fit with its outliers, and with the causes that may be wrong in all runs.
 
-    Cells are judged by their repeats first; those that are found are left out before the rest. Then, unless
-    runs are of several pulleys, rows and quantities that are freed are judged, and rows count if they explain
-    the runs as well as the best quantity.
+    Cells are judged by their repeats first; those that are found are left out before the rest. Then rows
+    and freed quantities are judged, and rows count if they explain the runs as well as the best quantity.
     """
     cells, rows, clean, line = _far(fit)
-    if is_mixed:
-        return fit._replace(outliers=_named(fit, cells))
-    freed = _freed(clean)
-    causes = _repairs(clean, freed)
-    if causes and line.chi2 >= _as_good(causes[0].line):
-        rows = {}
-    outliers = _named(fit, cells | rows)
-    words = _in_words(causes) or (_unseen_delay(clean, freed) if not outliers else "")
-    return fit._replace(outliers=outliers, causes=[words] if words else [])
+    causes, as_good = _repairs(clean, _freed(clean))
+    outliers = _named(fit, cells | rows if line.chi2 < as_good else cells)
+    return fit._replace(outliers=outliers, causes=_in_words(causes))
 
 
 def contradiction(fit: Fitted) -> str:
     """Say why no pulley explains a fit: outliers, runs that are held, causes, or what to check."""
-    cells, rows, *_ = _far(fit)
-    with suppress(CannotSeparate):
-        if (cells or rows) and _is_sound(_without(fit, cells | rows)):
-            return "; ".join(message for _, message in _named(fit, cells | rows))
-    held = np.flatnonzero(fit.used)[~moves(fit.data, fit.values)].tolist()
-    if held:
+    found, held = diagnosed(fit), np.flatnonzero(fit.used)[~moves(fit.data, fit.values)].tolist()
+    if held and not found.outliers:
         return f"{fit.runs.rows_in_words(*held)} would not move, as the fitted axle holds that; {CHECK}"
-    causes = _in_words(_repairs(fit, _freed(fit)))
-    return causes or impossible(fit.runs, fit.used, fit.shared, fit.names)[0] or CHECK
+    words = [message for _, message in found.outliers] or found.causes
+    return "; ".join(words) or impossible(fit.runs, fit.used, fit.shared, fit.names)[0] or CHECK
 
 
 # What may be wrong in all runs
@@ -104,38 +93,28 @@ def _freed(fit: Fitted) -> dict[str, Fitted]:
 
 
 def is_negative(name: str, value: float, u: float, times: float = 2.0) -> bool:
-    """Decide if what must be above 0 is below it by more than 2 u, and by more than so many ``times`` u."""
+    """Decide if what must be above 0 is below it by more than so many ``times`` its uncertainty, or 2."""
     return name != "delay" and value + max(2.0, times) * u < 0
 
 
+def _is_sound(fit: Fitted) -> bool:
+    """Decide if a pulley explains a fit, and more runs than are needed support it."""
+    pairs = zip(fit.names, fit.line.u, strict=True)
+    negative = any(is_negative(x, fit.values[x], u) for x, u in pairs)
+    return fit.line.dof > 0 and not negative and bool(moves(fit.data, fit.values).all())
+
+
 def _is_plausible(freed: Fitted) -> bool:
-    """Decide if what must be above 0 may be, and if a freed quantity is of a size that it may have."""
+    """Decide if a freed quantity is of a size that it may have, and explains the runs."""
     name = freed.names[-1]
     unit = float(freed.data.measured.min()) if name == "delay" else 1.0
     of_height = name == "gravity" and "drop" in freed.shared.inputs
     low, high = PLAUSIBLE.get("height" if of_height else name, (-inf, inf))
-    pairs = zip(freed.names, freed.line.u, strict=True)
-    return low < freed.values[name] / unit < high and not any(
-        is_negative(x, freed.values[x], u) for x, u in pairs
-    )
+    return low < freed.values[name] / unit < high and _is_sound(freed)
 
 
-def _variance(line: Line) -> tuple[float, float]:
-    """Return the variance in units of the known one, and its degrees of freedom.
-
-    The known variance counts in it unless runs scatter more than that.
-    """
-    extra = line.known_dof if (line.p_value or 0) >= SELDOM else 0.0
-    return max((line.chi2 + extra) / (line.dof + extra), TINY), line.dof + extra
-
-
-def _as_good(best: Line) -> float:
-    """Return the χ² below which an explanation is as good as the best."""
-    return best.chi2 + NEAR_BEST * _variance(best)[0]
-
-
-def _repairs(fit: Fitted, freed: Mapping[str, Fitted]) -> list[Fitted]:
-    """Return the freed quantities that repair a fit, the best first.
+def _repairs(fit: Fitted, freed: Mapping[str, Fitted]) -> tuple[list[Fitted], float]:
+    """Return the freed quantities that repair a fit, the best first, and the χ² of what is as good.
 
     An F test judges what the best takes off χ², if it leaves two degrees of freedom. With it are all that are
     as good. An inertia that is given without an uncertainty is repaired, too, if the interval of 95 %
@@ -144,21 +123,23 @@ def _repairs(fit: Fitted, freed: Mapping[str, Fitted]) -> list[Fitted]:
     changes = {x: abs(one.values[x] - fit.values[x]) / one.line.u[-1] for x, one in freed.items()}
     causes = [one for x, one in freed.items() if one.line.dof > 1 and changes[x] > 1 and _is_plausible(one)]
     if not causes:
-        return []
+        return [], inf
     causes.sort(key=lambda cause: cause.line.chi2)
     best = causes[0].line
-    scale, dof = _variance(best)
-    if fdtrc(1, dof, max(fit.line.chi2 - best.chi2, 0) / scale) * len(causes) < RARE:
-        return [cause for cause in causes if cause.line.chi2 < _as_good(best)]
+    # The known variance counts in that of the best, unless runs scatter more.
+    extra = best.known_dof if (best.p_value or 0) >= SELDOM else 0.0
+    variance, dof = max((best.chi2 + extra) / (best.dof + extra), TINY), best.dof + extra
+    as_good = best.chi2 + NEAR_BEST * variance
+    if fdtrc(1, dof, max(fit.line.chi2 - best.chi2, 0) / variance) * len(causes) < RARE:
+        return [cause for cause in causes if cause.line.chi2 < as_good], as_good
     is_certain = "rim_mass" in fit.shared.values and not any(fit.shared.inputs[x].uncertainty for x in "MIR")
-    return [
-        x for x in causes if x is freed.get("rim_mass") and is_certain and changes["rim_mass"] > x.line.times
-    ]
+    inertia = [one for one in causes if one.names[-1] == "rim_mass" and changes["rim_mass"] > one.line.times]
+    return inertia if is_certain else [], inf
 
 
-def _in_words(causes: Sequence[Fitted]) -> str:
+def _in_words(causes: Sequence[Fitted]) -> list[str]:
     which = "; they cannot tell which" if len(causes) > 1 else ""
-    return f"the runs fit better if {', or '.join(map(_cause, causes))}{which}" if causes else ""
+    return [f"the runs fit better if {', or '.join(map(_cause, causes))}{which}"] if causes else []
 
 
 def _cause(freed: Fitted) -> str:
@@ -176,18 +157,18 @@ def _cause(freed: Fitted) -> str:
     return f"{words} ({without}{shared.option('find', ','.join(freed.names))})"
 
 
-def _unseen_delay(fit: Fitted, freed: Mapping[str, Fitted]) -> str:
-    """Say that runs cannot show a delay of all times, or ""."""
-    one, gives = freed.get("delay"), ""
+def unseen_delay(fit: Fitted) -> list[str]:
+    """Say that runs cannot show a delay of all times."""
+    one, gives = _freed(fit).get("delay"), ""
     is_shown = one and one.line.times * one.line.u[-1] <= WIDE_DELAY
     if fit.runs.kind != "time" or "delay" in fit.names or is_shown:
-        return ""
+        return []
     if one and _is_plausible(one):
         value, _ = published(one.values["delay"], one.line.u[-1])
         gives = f" ({fit.shared.option('find', ','.join(one.names))} gives {value} s)"
     wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
     late = f"the runs cannot show whether all times are too long by a delay{gives}"
-    return f"{late}; the results assume none. {wider}"
+    return [f"{late}; the results assume none. {wider}"]
 
 
 # Outliers
@@ -301,13 +282,6 @@ def columns_in_doubt(runs: Runs, used: Selection) -> list[str]:
 
 
 # Runs that no pulley has
-
-
-def _is_sound(fit: Fitted) -> bool:
-    """Decide if a pulley explains a fit, and more runs than are needed support it."""
-    pairs = zip(fit.names, fit.line.u, strict=True)
-    negative = any(is_negative(x, fit.values[x], u, fit.line.times) for x, u in pairs)
-    return fit.line.dof > 0 and not negative and bool(moves(fit.data, fit.values).all())
 
 
 def impossible(

@@ -55,9 +55,9 @@ class Data(NamedTuple):
     varying: Varying
 
 
-def data_of(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
-    """Return the runs that are ``used``, by their measurements that are ``kept``."""
-    here = used[runs.run] if kept is None else used[runs.run] & kept
+def data_of(runs: Runs, used: Selection) -> Data:
+    """Return the runs that are ``used``."""
+    here = used[runs.run]
     run = (np.cumsum(used) - 1)[runs.run[here]]
     values, u = (runs.sign[runs.run] * runs.values)[here], runs.u_values[here]
     stated = bool(u.any())

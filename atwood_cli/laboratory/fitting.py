@@ -9,10 +9,19 @@ import numpy as np
 
 from ..numbers.digits import half_range
 from ..numbers.text import counted
-from ..reading.names import divided, read_names
+from ..reading.names import read_names
 from ..solver import physics
 from ..solver.scene import MASSES, Input, Scene, SceneError, parameter_of
-from .diagnosis import CHECK, MOST_SHARE, columns_in_doubt, contradiction, diagnosed, impossible, is_negative
+from .diagnosis import (
+    CHECK,
+    MOST_SHARE,
+    columns_in_doubt,
+    contradiction,
+    diagnosed,
+    impossible,
+    is_negative,
+    unseen_delay,
+)
 from .estimate import Conditions, Fitted, best_fit, data_of, estimate, moves, rough_fit, separates
 from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, in_python
 from .runs import OUT_OF_RANGE, REACHES_0, Runs, Selection, behind_an_error, in_range
@@ -20,8 +29,6 @@ from .statistics import CannotSeparate
 
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
-DERIVED = {"I": "R", "M": "inertia"}
-"""What is needed for an input that follows from the rim mass."""
 NO_FIT = "no pulley explains these runs, whatever its inertia and its axle's friction"
 
 
@@ -42,10 +49,6 @@ def read_find(words: Sequence[str], shared: Conditions) -> list[str]:
 
     None may be given, and of the usual ones none may be neither given nor fitted.
     """
-    if derived := [x for x in divided(words) if x in DERIVED]:
-        raise SceneError(
-            "find", derived[0], f"follows from rim_mass: find that, with {DERIVED[derived[0]]} given"
-        )
     names = list(dict.fromkeys(read_names("find", words, FITTED, "quantity to fit", SYMBOLS)))
     for name in names:
         for known in QUANTITIES[name].given_by:
@@ -108,30 +111,32 @@ def fitted(runs: Runs, shared: Conditions, names: Sequence[str]) -> Fitted:
     except CannotSeparate as error:
         how = behind_an_error([*runs.remarks, *unused, *runs.doubts])
         raise CannotSeparate(f"{doubt or error}{how}") from None
-    fit = diagnosed(fit._replace(shown=shown), is_mixed=bool(columns))
+    fit = fit._replace(shown=shown) if columns else diagnosed(fit._replace(shown=shown))
     more = [f"{doubt}."] if doubt and not fit.outliers else []
-    return fit._replace(runs=runs._replace(doubts=[*runs.doubts, *more]))
+    causes = fit.causes if fit.causes or fit.outliers or columns else unseen_delay(fit)
+    return fit._replace(runs=runs._replace(doubts=[*runs.doubts, *more]), causes=causes)
 
 
 def _with_results(runs: Runs, used: Selection, shared: Conditions, names: Sequence[str]) -> Fitted:
-    """Return the fit of the runs that are used. Raises CannotSeparate."""
+    """Return the fit of the runs that are used. Raises CannotSeparate if no pulley explains them."""
+    fit, results, what = None, dict[str, Result](), NO_FIT
     try:
         fit = best_fit(runs, used, shared, names)
         ends = [*_at_ends(fit)]
+        spread = _with_derived(dict(zip(names, fit.line.u, strict=True)), names, shared)
+        for x, value in _with_derived(fit.values, names, shared).items():
+            u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in ends))
+            results[x] = Result.of(value, u, fit.line.times * u)
+            if x in names and is_negative(x, value, u, fit.line.times):
+                what = f"{equation(x, value, u)} is negative"
+                raise CannotSeparate
+        if runs.kind == "time" and not moves(fit.data, fit.values).all():
+            raise CannotSeparate
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        message = impossible(runs, used, shared, names)[0] or CHECK
+        why = impossible(runs, used, shared, names)[0] or CHECK
         with suppress(CannotSeparate):
-            message = contradiction(rough_fit(runs, used, shared, names))
-        raise CannotSeparate(f"{NO_FIT}: {message}") from None
-    line, results = fit.line, dict[str, Result]()
-    spread = _with_derived(dict(zip(names, line.u, strict=True)), names, shared)
-    for x, value in _with_derived(fit.values, names, shared).items():
-        u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in ends))
-        results[x] = Result.of(value, u, line.times * u)
-        if x in names and is_negative(x, value, u, line.times):
-            raise CannotSeparate(f"{equation(x, value, u)} is negative: {contradiction(fit)}")
-    if runs.kind == "time" and not moves(fit.data, fit.values).all():
-        raise CannotSeparate(f"{NO_FIT}: {contradiction(fit)}")
+            why = contradiction(fit or rough_fit(runs, used, shared, names))
+        raise CannotSeparate(f"{what}: {why}") from None
     return fit._replace(results=results)
 
 
