@@ -159,7 +159,7 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
         fall = np.where(measured > delay, measured - delay, np.nan)
         a, ideal_a = (physics.acceleration_of_fall(runs.given["drop"], t) for t in (fall, ideal - delay))
         u_a = 2 * a * u / fall
-    of_time, of_a = fit.line.sigma.min(), np.nanmin(u_a, initial=np.inf)
+    of_time, of_a = fit.line.sigma.min(), np.nanmin(u_a, initial=1e300)
     computed = {"u": (u, of_time), "expected": (ideal, of_time), "residual": ((measured - ideal) / u, 1.0)}
     computed |= {"a": (a, of_a), "u_a": (u_a, of_a), "expected_a": (ideal_a, of_a)}
     columns = {**runs.given, runs.kind: measured}

@@ -1,7 +1,6 @@
 """The quantities that a fit gives, and their numbers as published: cut where their uncertainty begins."""
 
 from collections.abc import Mapping, Sequence
-from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -68,7 +67,8 @@ def published(value: float, uncertainty: float, interval: Sequence[float] = ()) 
 
 def as_determined(value: float, scale: float) -> float:
     """Return a value rounded at the seventh digit of an uncertainty: beyond, machines differ."""
-    return round(value, 6 - Decimal(scale).adjusted()) + 0.0
+    _, _, exponent = f"{scale:.16e}".partition("e")
+    return round(value, 6 - int(exponent)) + 0.0
 
 
 def equation(name: str, value: float, uncertainty: float) -> str:
