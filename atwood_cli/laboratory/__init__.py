@@ -7,7 +7,7 @@ from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any
 
 from ..output.text import naming_the_extra
-from ..reading.inputs import IS_NOT_ONE, read_input
+from ..reading.inputs import read_input
 from ..reading.names import divided
 from ..solver.scene import INPUTS, MASSES, Given, Input, SceneError
 from ..tables.sources import Unreadable
@@ -135,5 +135,4 @@ def _read_given(name: str, value: Given) -> Input:
     try:
         return read_input("m1" if name == "hanger" else name, value)
     except SceneError as error:
-        rule = "must be one number, for all runs" if error.rule == IS_NOT_ONE else error.rule
-        raise SceneError(name, value, rule) from None
+        raise SceneError(name, value, error.rule) from None

@@ -23,7 +23,7 @@ from .diagnosis import (
     unseen_delay,
 )
 from .estimate import Conditions, Fitted, best_fit, data_of, estimate, moves, rough_fit, separates
-from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, in_python
+from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, as_determined, equation, in_python
 from .runs import OUT_OF_RANGE, REACHES_0, Runs, Selection, behind_an_error, in_range
 from .statistics import CannotSeparate
 
@@ -122,11 +122,13 @@ def _with_results(runs: Runs, used: Selection, shared: Conditions, names: Sequen
     fit, results, what = None, dict[str, Result](), NO_FIT
     try:
         fit = best_fit(runs, used, shared, names)
-        ends = [*_at_ends(fit)]
+        pairs = [*_at_ends(fit)]
         spread = _with_derived(dict(zip(names, fit.line.u, strict=True)), names, shared)
         for x, value in _with_derived(fit.values, names, shared).items():
-            u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in ends))
-            results[x] = Result.of(value, u, fit.line.times * u)
+            u = hypot(spread[x], *(half_range([value, *(end[x] for end in pair)]) for pair in pairs))
+            half = fit.line.times * u
+            y, u_y, *ends = (as_determined(number, u) for number in (value, u, value - half, value + half))
+            results[x] = Result(y, u_y, (ends[0], ends[1]))
             if x in names and is_negative(x, value, u, fit.line.times):
                 what = f"{equation(x, value, u)} is negative"
                 raise CannotSeparate

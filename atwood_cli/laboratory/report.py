@@ -21,7 +21,7 @@ from .columns import MEASURED
 from .diagnosis import RARE, SELDOM
 from .estimate import Fitted, data_of, expected, moves
 from .results import QUANTITIES, RESULTS, USUAL, Fit, as_determined, cut, equation, published, rounded
-from .statistics import NORMAL_DOF, Line
+from .statistics import NORMAL_DOF
 
 NOT_FITTED = "no value, as it is given, was not to be fitted, or the runs do not determine it"
 
@@ -53,7 +53,8 @@ def _scatter(fit: Fitted) -> str:
         return "No repeats show the scatter of measurements; only the residuals do."
     probability = f"p = {rounded(p_value)}" if p_value >= 0.001 else "p < 0.001"
     test = f" by an F({line.dof}, {data.known_dof:.0f}) test" if data.known_dof < NORMAL_DOF else ""
-    chi2 = f"χ² = {rounded(_chi2(line), 3)}, {counted(line.dof, 'degree')} of freedom, {probability}{test}"
+    chi2, dof = rounded(round(line.chi2, 9), 3), counted(line.dof, "degree")
+    tested = f"χ² = {chi2}, {dof} of freedom, {probability}{test}"
     verb = "agree with the fit within chance, by"
     if p_value < SELDOM:
         verb = "scatter more than"
@@ -62,12 +63,7 @@ def _scatter(fit: Fitted) -> str:
     elif p_value > 1 - RARE:
         verb = "scatter less than"
     between = f"; the scatter between runs is taken as one of the {data.varying}s" if line.between else ""
-    return f"The runs {verb} their {'uncertainties' if data.stated else 'repeats'} ({chi2}){between}."
-
-
-def _chi2(line: Line) -> float:
-    """Return χ², of which rounding errors make a little also where it is 0."""
-    return as_determined(line.chi2, max(line.chi2, 1e-3))
+    return f"The runs {verb} their {'uncertainties' if data.stated else 'repeats'} ({tested}){between}."
 
 
 def _capital(words: str) -> str:
@@ -105,7 +101,7 @@ def results_of(fit: Fitted) -> Fit:
         uncertainty={name: result.uncertainty for name, result in fit.results.items()},
         interval={name: list(result.interval) for name, result in fit.results.items()},
         correlation=_correlation(fit.line.covariance),
-        chi2=_chi2(fit.line) if known else None,
+        chi2=as_determined(fit.line.chi2, max(fit.line.chi2, 1e-3)) if known else None,
         dof=fit.line.dof,
         interval_dof=fit.line.t_dof if fit.line.t_dof < NORMAL_DOF else None,
         between_runs=between if known and fit.line.dof else None,

@@ -50,13 +50,6 @@ class Result(NamedTuple):
     uncertainty: float
     interval: tuple[float, float]
 
-    @classmethod
-    def of(cls, value: float, uncertainty: float, half: float) -> "Result":
-        """Return a result whose interval has this half width, by the digits that are determined."""
-        numbers = (value, uncertainty, value - half, value + half)
-        value, u, low, high = (as_determined(number, uncertainty) for number in numbers)
-        return cls(value, u, (low, high))
-
 
 def published(value: float, uncertainty: float, interval: Sequence[float] = ()) -> tuple[str, str]:
     """Return a value ± its uncertainty, and its interval, all cut at the second digit of the uncertainty."""
