@@ -43,7 +43,7 @@ GIVEN = f"{SCENE} drop time speed".replace("_", "-")
 OPTIONS = {
     "solve": f"{GIVEN} a find only expect all digits budget explain {ON_PAPER} {DRAWN}",
     "sweep": f"{GIVEN} only expect digits {ON_PAPER} {DRAWN}",
-    "contact": f"{SCENE.replace('_', '-')} points digits {ON_PAPER} {DRAWN}",
+    "contact": f"{SCENE.replace('_', '-')} only points digits {ON_PAPER} {DRAWN}",
     "fit": f"drop m1 m2 hanger g M inertia I R axle find without columns column label sheet only {ON_PAPER} {DRAWN}",
     "batch": f"{GIVEN} from columns column label sheet only expect digits markdown allow-errors output force",
     "quantities": ON_PAPER,

@@ -8,6 +8,7 @@ from ..output.forms import Destination, Picture, Report, show
 from ..output.scene_page import contact_record, print_contact
 from ..output.text import say
 from ..reading.inputs import read_digits, read_exactly
+from ..reading.names import read_results
 from ..solver.answers import Answers
 from ..solver.scene import INPUTS, Scene, SceneError
 from .options import DONE, FIGURE, OUTPUT, SCENE, Digits, option, with_options
@@ -33,6 +34,10 @@ def contact(
     target: Destination,
     picture: Picture | None,
     *,
+    only: Annotated[
+        list[str] | None,
+        option("Arc", metavar="NAME", help="Only this column, as tension, or 'tension in lbf'; repeatable."),
+    ] = None,
     points: Annotated[
         str | None,
         option(
@@ -43,13 +48,17 @@ def contact(
     ] = None,
     digits: Digits = None,
 ) -> int:
+    names, units = read_results("only", only or [], balance.POINT, "column")
     inputs = {name: read_exactly(name, given.get(name)) for name in INPUTS}
     answers = Answers(Scene.of(inputs), read_digits(digits), inputs)
+    if inputs["R"].number is None and (per_metre := [x for x in names if x.endswith("per_metre")]):
+        raise SceneError("only", per_metre[0], "needs the radius R as well")
     if not target.form:
         answers = answers.to_six_digits
     if points is not None and picture is not None and not target.form and target.file is None:
         raise SceneError("points", points, "has no effect on a picture; leave it out")
-    arc = balance.contact(answers, balance.USUAL_POINTS if points is None else points)
+    at = balance.USUAL_POINTS if points is None else points
+    arc = balance.contact(answers.in_units(units), at, dict.fromkeys(names) or balance.POINT)
     if picture is not None:
         from ..output.scene_figure import save_scene
 

@@ -12,7 +12,7 @@ from ..output.text import cell, say
 from ..reading.inputs import read_digits
 from ..reading.names import read_results
 from ..reading.scenes import read_answers
-from ..solver.quantities import FROM_MOTION, MEASURED_NAMES, NAMES
+from ..solver.quantities import FROM_MOTION, MEASURED_NAMES, UNITS
 from ..solver.scene import FALL, FINDABLE, INPUTS, SceneError
 from .options import (
     COULD_NOT,
@@ -88,7 +88,7 @@ def solve(
         bool, option("Output", "--explain", help="Show the derivation instead, with numbers put in.")
     ] = False,
 ) -> int:
-    names, units = read_results("only", only or [], known=(*NAMES, *MEASURED_NAMES))
+    names, units = read_results("only", only or [], UNITS)
     conditions = [read_condition(typed) for typed in expect or []]
     asked = {*names, *(condition.name for condition in conditions)}
     answers = read_answers({**given, "find": find or implied(asked, given)}, read_digits(digits))

@@ -9,7 +9,7 @@ from ..output.forms import Destination, Picture, Report, show
 from ..output.text import say
 from ..reading.inputs import read_digits
 from ..reading.names import read_results
-from ..solver.quantities import TABLE_NAMES
+from ..solver.quantities import TABLE_NAMES, UNITS
 from ..sweep.ranges import read_sweep
 from ..sweep.sweep_figure import save_sweep
 from ..sweep.sweep_page import SweepPage
@@ -44,7 +44,7 @@ def sweep(
     expect: Expect = None,
     digits: Digits = None,
 ) -> int:
-    asked, units = read_results("only", only or [], TABLE_NAMES)
+    asked, units = read_results("only", only or [], {name: UNITS[name] for name in TABLE_NAMES})
     names = list(dict.fromkeys(asked))
     precision, conditions = read_digits(digits), [*map(read_condition, expect or [])]
     swept = read_sweep(given, precision, units)

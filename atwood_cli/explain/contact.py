@@ -6,7 +6,7 @@ would exert if they acted on the pulley themselves. Both sides are computed here
 correctly, so their digits agree.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple
@@ -25,6 +25,10 @@ from .messages import reasons, remarks, unmarked
 Rounded = float | Decimal
 
 USUAL_POINTS, MAX_POINTS = 13, 100_000
+POINT = {"angle": "°"} | dict.fromkeys(
+    "tension normal_per_radian friction_per_radian normal_per_metre friction_per_metre".split(), "N"
+)
+"""What is computed at a point of the arc, with its unit, or that of its product with a radian or a metre."""
 ZERO_DIGITS = 50
 """The digits of a sum that must be 0 if it is to be 0."""
 
@@ -38,10 +42,11 @@ WITHOUT_FRICTION = "Both tensions are equal: there is no friction."
 
 
 class Contact(NamedTuple):
-    """The arc of contact: its profile, its points with their columns, the balance of forces, and notes."""
+    """The arc of contact: its profile, its points, the units of their columns, the balance, and notes."""
 
     kind: Profile
     points: list[dict[str, Rounded]]
+    units: dict[str, str]
     balance: dict[str, dict[str, Rounded]]
     notes: list[str]
 
@@ -63,21 +68,22 @@ def kind_of(decided: Decisions) -> Profile:
     return "creep" if spare else "exponential"
 
 
-def contact(answers: Answers, points: int | str = USUAL_POINTS) -> Contact:
+def contact(answers: Answers, points: int | str = USUAL_POINTS, columns: Collection[str] = POINT) -> Contact:
     """Solve the arc of contact of a scene at so many equally spaced angles.
 
     Raises SceneError if the scene does not determine the arc.
     """
-    kind = kind_of(answers.decided)
+    kind, units = kind_of(answers.decided), {x: unit.in_words for x, unit in answers.units.items()}
     last = read_whole("points", points, 2, MAX_POINTS) - 1
-    rows = [point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
+    rows = [point(answers, kind, Fraction(j, last), columns) for j in range(last + 1)]
     notes = [say_profile(answers, kind), *map(unmarked, remarks(answers.to_six_digits))]
     notes += reasons(answers, ("tension_1", "tension_2"))
-    return Contact(kind, rows, _balance(answers, kind), notes)
+    notes += [f"{name} is in {unit}." for name, unit in units.items()]
+    return Contact(kind, rows, {x: units.get(x, POINT[x]) for x in columns}, _balance(answers, kind), notes)
 
 
-def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
-    """Return the columns at the fraction q of the arc, counted from m1's end."""
+def point(answers: Answers, kind: Profile, q: Fraction, columns: Collection[str]) -> dict[str, Rounded]:
+    """Return columns, as far as they exist, at the fraction q of the arc, counted from m1's end."""
     scene, sign = answers.decided.scene, answers.decided.heavier_side
     from_light = q if sign >= 0 else 1 - q
 
@@ -100,17 +106,14 @@ def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
     def friction(machine: Machine[Any]) -> Any:
         return machine.ar.number(0) if stuck else machine.arc_mu(kind) * tension(machine) * sign
 
-    settled = answers.settle(tension)
-    row = {
-        "angle": answers.settle(lambda machine: scene.wrap.degrees(machine.ar, q)),
-        "tension": settled,
-        "normal_per_radian": settled,
-        "friction_per_radian": answers.settle(friction),
+    laws: dict[str, Callable[[Machine[Any]], Any]] = {
+        "angle": lambda machine: scene.wrap.degrees(machine.ar, q),
+        **{"tension": tension, "normal_per_radian": tension, "friction_per_radian": friction},
     }
     if scene.R is not None:
-        row["normal_per_metre"] = answers.settle(lambda m: tension(m) / _radius(m))
-        row["friction_per_metre"] = answers.settle(lambda m: friction(m) / _radius(m))
-    return row
+        laws["normal_per_metre"] = lambda m: tension(m) / _radius(m)
+        laws["friction_per_metre"] = lambda m: friction(m) / _radius(m)
+    return {x: answers.settle(answers.in_its_unit(x, laws[x])) for x in columns if x in laws}
 
 
 def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:

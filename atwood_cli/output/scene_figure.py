@@ -114,8 +114,9 @@ def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterato
 
 def _forces(answers: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
     """Return tension and friction per radian (N) at shares of the arc; nR is the tension, too."""
-    points = [point(answers.rounded_to(None), kind, Fraction(share)) for share in shares]
-    tension, friction = ([float(row[name]) for row in points] for name in ("tension", "friction_per_radian"))
+    names = ("tension", "friction_per_radian")
+    points = [point(answers.rounded_to(None), kind, Fraction(share), names) for share in shares]
+    tension, friction = ([float(row[name]) for row in points] for name in names)
     return np.array(tension), np.array(friction)
 
 

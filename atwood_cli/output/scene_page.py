@@ -197,16 +197,15 @@ def print_steps(page: Page, answers: Answers, names: Sequence[str]) -> None:
 
 # The arc of contact
 
-POINT = "angle tension normal_per_radian friction_per_radian normal_per_metre friction_per_metre".split()
-"""The keys of a point in JSON."""
 HEADS = {
-    "angle": "angle (°)",
-    "tension": "tension T = nR (N)",
-    "friction_per_radian": "friction fR (N/rad)",
-    "normal_per_metre": "normal n (N/m)",
-    "friction_per_metre": "friction f (N/m)",
+    "angle": "angle ({})",
+    "tension": "tension T = nR ({})",
+    "normal_per_radian": "normal nR ({}/rad)",
+    "friction_per_radian": "friction fR ({}/rad)",
+    "normal_per_metre": "normal n ({}/m)",
+    "friction_per_metre": "friction f ({}/m)",
 }
-"""The headings of a point's columns; the normal force by angle is the tension, (13)."""
+"""The headings of a point's columns, for their units."""
 FORCES = {"friction": "friction", "normal": "normal force", "sum": "sum"}
 """The forces in the balance, in words."""
 
@@ -218,7 +217,7 @@ def contact_record(answers: Answers, arc: "Contact") -> dict[str, object]:
         "scene": scene_record(answers.decided.scene, round_=answers.round),
         "regime": answers.decided.regime,
         "profile": arc.kind,
-        "points": [{name: point.get(name) for name in POINT} for point in arc.points],
+        "points": [{name: point.get(name) for name in arc.units} for point in arc.points],
         "balance": arc.balance,
         "notes": [unmarked(verdict(answers)), *arc.notes],
     }
@@ -230,10 +229,14 @@ def print_contact(page: Page, answers: Answers, arc: "Contact", tables: bool) ->
     if not tables:
         page.say(*arc.notes)
         return
-    names = [name for name in HEADS if name in arc.points[0]]
-    rows = [{**point, "angle": strip_zeros(Decimal(point["angle"]))} for point in arc.points]
-    columns = [aligned(cell(row[name]) for row in rows) for name in names]
-    page.table([HEADS[name] for name in names], [list(zip(*columns, strict=True))])
+    # The normal force by angle is the tension, (13).
+    is_double = arc.units.get("tension") == arc.units.get("normal_per_radian")
+    columns = {}
+    for name in [x for x in arc.points[0] if x != "normal_per_radian" or not is_double]:
+        values = [point[name] for point in arc.points]
+        numbers = [strip_zeros(Decimal(value)) for value in values] if name == "angle" else values
+        columns[HEADS[name].format(arc.units[name])] = aligned(map(cell, numbers))
+    page.table(list(columns), [list(zip(*columns.values(), strict=True))])
     forces = {words: arc.balance[name] for name, words in FORCES.items()}
     forces["compare: T1 + T2 as vectors"] = arc.balance["resultant"]
     xs, ys = (aligned(cell(force[axis]) for force in forces.values()) for axis in "xy")

@@ -76,16 +76,19 @@ def read_names(
 
 
 def read_results(
-    parameter: str, typed: Iterable[str], known: Collection[str]
+    parameter: str, typed: Iterable[str], known: Mapping[str, str], kind: str = "quantity"
 ) -> tuple[list[str], dict[str, Unit]]:
-    """Read names of quantities, and the units that they are to be in: T2 in lbf. Raises SceneError."""
+    """Read names, and the units that they are to be in: T2 in lbf. Raises SceneError.
+
+    ``known`` has the names' own units. Quantities may be named by their symbols.
+    """
+    symbols = NAMES_BY_SYMBOL if kind == "quantity" else {}
     names, units = list[str](), dict[str, Unit | None]()
     for words in divided(typed):
         word, _, unit = map(str.strip, words.partition(" in "))
-        names.append(name := read_name(parameter, word, known, "quantity", NAMES_BY_SYMBOL))
+        names.append(name := read_name(parameter, word, known, kind, symbols))
         try:
-            own = "" if name == "regime" else QUANTITIES[name].unit
-            read = read_unit_of_result(unit, own) if unit else None
+            read = read_unit_of_result(unit, known[name]) if unit else None
         except Malformed as error:
             raise SceneError(parameter, words, str(error)) from None
         if units.setdefault(name, read) != read:
@@ -119,7 +122,7 @@ def read_name(
     if known is FINDABLE and result in TABLE_NAMES:
         hint = f"; leave find out: {result} is a result (--only {result})"
     if kind == "quantity" and " in " in word:
-        raise SceneError(parameter, word, "has a unit, which only solve and sweep take; leave it out")
+        raise SceneError(parameter, word, "has a unit, which batch and arrays do not take; leave it out")
     if kind == "quantity" and word in MEASURED_NAMES and word not in INPUTS:
         raise SceneError(parameter, word, "follows from a measured motion, which only solve takes")
     raise SceneError(parameter, word, f"is not {a_kind}{hint or nearest(word, known) or known_names}")

@@ -37,9 +37,9 @@ class Answer(NamedTuple):
     reason: str = ""
 
 
-def _in_unit(name: str, unit: Unit, machine: Machine[N]) -> N:
-    """Return a quantity in another unit, which may be one of other terms."""
-    value = getattr(machine, name)
+def _in_unit(quantity: OnMachine, unit: Unit, machine: Machine[N]) -> N:
+    """Return a number in another unit, which may be one of other terms."""
+    value = quantity(machine)
     if unit.terms:
         value = unit.terms.number(value, machine.ar.number(getattr(machine.scene, unit.terms.by)))
     in_unit: N = value / machine.ar.number(unit.size)
@@ -86,7 +86,11 @@ class Answers:
 
     def quantity(self, name: str) -> OnMachine:
         """Return a quantity as a number of a machine, in its unit."""
-        return partial(_in_unit, name, self.units[name]) if name in self.units else attrgetter(name)
+        return self.in_its_unit(name, attrgetter(name))
+
+    def in_its_unit(self, name: str, quantity: OnMachine) -> OnMachine:
+        """Return a number of a machine in the unit in which what has this name is asked for."""
+        return partial(_in_unit, quantity, self.units[name]) if name in self.units else quantity
 
     def typed(self, x: str) -> Input:
         """Return an input as it was given."""

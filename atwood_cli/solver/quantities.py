@@ -132,6 +132,8 @@ NEED_BOTH_MASSES = {*NAMES} - {
 """What no scene has that lacks a mass."""
 TABLE_NAMES = (*NAMES, *FROM_MOTION["fall"])
 """The quantities of many scenes: those of every scene, and of a fall."""
+UNITS = {"regime": ""} | {name: about.unit for name, about in QUANTITIES.items()}
+"""All quantities with their units."""
 STANDARD = (
     "regime",
     "acceleration",
