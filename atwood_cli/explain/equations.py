@@ -17,6 +17,7 @@ from ..numbers.rational import EXACT, Irrational
 from ..solver.answers import Answers
 from ..solver.machine import Machine
 from ..solver.quantities import QUANTITIES
+from ..solver.scene import FALL
 from .given import WEIGHTS
 
 INPUT_DIGITS = 17
@@ -116,7 +117,7 @@ class Derivation:
             "f_axle": decided.axle_friction if decided.has_axle_friction else None,
             "b": decided.axle_mass if decided.has_axle_friction else None,
             self.words["a"]: decided.measured_acceleration if motion.finds else None,
-            **dict(zip("stv", decided.fall, strict=True)),
+            **{symbol: decided.fall.get(name) for symbol, name in zip("stv", FALL, strict=True)},
             **terms,
         }
 

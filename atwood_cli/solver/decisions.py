@@ -34,7 +34,7 @@ from ..numbers.rational import EXACT
 from ..numbers.settling import is_positive
 from . import physics
 from .quantities import NEEDS_MASSES, Undetermined
-from .scene import DRIVE, FALL, Scene
+from .scene import DRIVE, Scene
 
 if TYPE_CHECKING:
     from ..numbers.rational import Arithmetic, N, Quantity
@@ -258,10 +258,10 @@ class Decisions:
         return self.motion.acceleration(-1 if self.heavier_side < 0 else 1)
 
     @lazy
-    def fall(self) -> tuple[Fraction | None, ...]:
-        """Height (m), time (s) and speed (m/s) of a fall, without signs; None if one is not given."""
-        given = (getattr(self.motion, name) for name in FALL)
-        return tuple(-x if x is not None and is_number(x) and x < 0 else x for x in given)
+    def fall(self) -> dict[str, Fraction]:
+        """What is given of height (m), time (s) and speed (m/s) of a fall, without signs."""
+        given = {name: getattr(self.motion, name) for name in self.motion.fall}
+        return {name: -x if is_number(x) and x < 0 else x for name, x in given.items()}
 
     @lazy
     def slows_down(self) -> bool:

@@ -508,34 +508,23 @@ class Machine(Generic[N]):
         return torque
 
     @lazy
-    def drop(self) -> N:
-        a, drop, time, speed = self._fall()
-        if drop is not None:
-            return drop
-        if speed is not None:
-            return physics.height_or_acceleration(speed, a)
-        assert time is not None
-        return physics.height_in_time(a, time)
-
-    @property
     def fall_time(self) -> N:
-        a, drop, time, speed = self._fall()
-        if time is not None:
-            return time
-        if drop is not None:
-            return physics.fall_time(drop, a, self.ar.sqrt)
-        assert speed is not None
-        return physics.time_or_acceleration(speed, a)
+        a, given = self._fall()
+        if "time" in given:
+            return given["time"]
+        if "speed" in given:
+            return physics.time_or_acceleration(given["speed"], a)
+        return physics.fall_time(given["drop"], a, self.ar.sqrt)
 
     @lazy
     def final_speed(self) -> N:
-        a, drop, time, speed = self._fall()
-        if speed is not None:
-            return speed
-        if drop is not None:
-            return physics.final_speed(drop, a, self.ar.sqrt)
-        assert time is not None
-        return physics.speed_after(a, time)
+        a, given = self._fall()
+        return given["speed"] if "speed" in given else physics.speed_after(a, self.fall_time)
+
+    @lazy
+    def drop(self) -> N:
+        a, given = self._fall()
+        return given["drop"] if "drop" in given else physics.height_or_acceleration(self.final_speed, a)
 
     @property
     def final_angular_speed(self) -> N:
@@ -557,8 +546,8 @@ class Machine(Generic[N]):
             return motion
         return motion * (self.rim_acceleration * self.decided.heavier_side / self.magnitude)
 
-    def _fall(self) -> tuple[N, N | None, N | None, N | None]:
-        """Return the acceleration (m/s²), and height, time and speed of a fall; None if one is not given."""
+    def _fall(self) -> tuple[N, dict[str, N]]:
+        """Return the acceleration (m/s²), and what is given of a fall."""
         if not self.decided.motion.fall:
             raise Undetermined(quantities.NEEDS_FALL)
         if self.decided.slows_down:
@@ -567,5 +556,4 @@ class Machine(Generic[N]):
         a = self.magnitude * -1 if lighter_falls else self.magnitude
         if self.ar.is_zero(a):
             raise Undetermined(quantities.AT_REST)
-        drop, time, speed = (None if x is None else self.ar.number(x) for x in self.decided.fall)
-        return a, drop, time, speed
+        return a, {name: self.ar.number(x) for name, x in self.decided.fall.items()}

@@ -167,15 +167,6 @@ def height_or_acceleration(speed: N, acceleration_or_height: N) -> N:
     return speed * speed / (2 * acceleration_or_height)
 
 
-def height_in_time(a: N, time: N) -> N:
-    """Return the height (m) fallen from rest in ``time`` (s) with the acceleration ``a`` (m/s²).
-
-    >>> height_in_time(2, 3)
-    9.0
-    """
-    return a * time * time / 2
-
-
 def time_or_acceleration(speed: N, acceleration_or_time: N) -> N:
     """Return the time (s) of a fall from rest to ``speed`` (m/s), or its acceleration (m/s²), by the other.
 
@@ -201,15 +192,6 @@ def fall_time(drop: N, a: N, sqrt: Function[N]) -> N:
     3.0
     """
     return sqrt(2 * drop / a)
-
-
-def final_speed(drop: N, a: N, sqrt: Function[N]) -> N:
-    """Return the speed (m/s) after a fall of ``drop`` (m) from rest with the acceleration ``a`` (m/s²).
-
-    >>> final_speed(9, 2, lambda x: x**0.5)
-    6.0
-    """
-    return sqrt(2 * drop * a)
 
 
 def kinetic_energy(mass: N, a: N, distance: N) -> N:
