@@ -75,18 +75,14 @@ def force(pieces: Sequence[Arc[N]], law: Callable[[N, N, N], tuple[N, N]]) -> tu
         dx = end.tension * end.cos - start.tension * start.cos
         dy = end.tension * end.sin - start.tension * start.sin
         forces.append(law(arc.mu, dx, dy))
-    x, y = forces[0]
-    for dx, dy in forces[1:]:
-        x, y = x + dx, y + dy
-    return x, y
+    (x, *xs), (y, *ys) = zip(*forces, strict=True)
+    return sum(xs, start=x), sum(ys, start=y)
 
 
 def torque_per_radius(ar: "Arithmetic[N]", pieces: Sequence[Arc[N]]) -> N:
     """Return ∫ dT/dθ dθ (N), the torque of friction on the pulley over its radius, arc by arc; (23)."""
-    total = ar.number(0)
-    for arc in pieces:
-        total += arc.start.tension * ar.expm1(arc.mu * (arc.end.angle - arc.start.angle))
-    return total
+    terms = [arc.start.tension * ar.expm1(arc.mu * (arc.end.angle - arc.start.angle)) for arc in pieces]
+    return sum(terms, start=ar.number(0))
 
 
 def tension(ar: "Arithmetic[N]", arc: Arc[N], angle: N) -> N:

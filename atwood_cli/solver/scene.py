@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn, cast
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn, SupportsFloat, cast
 
 from ..numbers.digits import as_typed, to_double
 from ..numbers.rational import EXACT, N
@@ -110,15 +110,8 @@ Units = Mapping[str, Unit]
 IN_SI: Units = {}
 """The units of quantities, by their names, that are not those of the SI: of none."""
 
-if TYPE_CHECKING:
-    from numpy import floating, integer
-
-    OfNumPy = integer[Any] | floating[Any]
-else:
-    OfNumPy = float
-
-Given = str | int | float | Decimal | Fraction | Angle | OfNumPy
-"""An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
+Given = str | int | float | Decimal | Fraction | Angle | SupportsFloat
+"""An input. Text, int, Decimal and Fraction mean exactly themselves, any float its binary value."""
 
 SHAPES = "disk cylinder hoop ring sphere shell"
 INERTIA_FACTORS = dict(zip(SHAPES.split(), "1/2 1/2 1 1 2/5 2/3".split(), strict=True))
