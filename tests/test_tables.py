@@ -93,7 +93,7 @@ def test_a_heading_that_may_mean_an_input_is_refused(words: str) -> None:
     name, headings = words.split(": ")
     for heading in headings.split("|"):
         with pytest.raises(Unreadable, match=re.escape(f"'{heading}' ({name}?) is not read, and may matter")):
-            read_columns([*({"m1", "m2"} - {name}), heading], Wanted(NAMES))
+            read_columns(sheets.Sheet([*({"m1", "m2"} - {name}), heading], ()), Wanted(NAMES))
 
 
 GRAMS = headings.Heading(0, "m1 (g)", "m1", unit="g", read=Unit("g", Fraction(1, 1000)))
@@ -189,6 +189,7 @@ UNIT_OF_M1 = "'m1 (kg)' as m1 in kg; 'm2' in kg, 'time' in s, as no unit is give
         ("Atwood's machine, group 3\n\n" + TABLE, ABOVE),
         ('5" drop\n' + TABLE, ABOVE),
         ("Lab 3,,\n,,\n" + TABLE, ABOVE),
+        ("Measurement of g,,(kg),[s]\n" + TABLE, ABOVE),
         ("\ufeffLab 3;;;;\n" + SEMICOLONS.replace("\n", ";;\n") + ";;;;\n", f"{PARTED}, {ABOVE}"),
         (TABLE.replace("m1", '"m1\n(kg)"'), UNIT_OF_M1),
         (TABLE.encode("utf-16"), ""),  # as Excel saves "Unicode text"
@@ -289,6 +290,11 @@ ASKED = [
     ("fit --drop 1m", "m1 (g);m2 (g);acc. [m/s²];durée [s]\n90;95;0,2;3,2\n90;99;0,4;2,3\n", "t (or a) is missing", "m1:g,m2:g,-,t:s"),
     ("fit", "m1 (g);m2 (g);durée [s];acc. [m/s²]\n90;95;3,2;0,2\n90;99;2,3;0,4\n", "t (or a), drop are missing", "m1:g,m2:g,-,a:m/s2"),
     ("fit --drop 60cm", "m1 (g);m2 (g);acc. [m/s²]\n90;95;0,2\n90;99;0,4\n", "t (or a) is missing", "m1:g,m2:g,a:m/s2"),
+    ("batch --only a", "Gewichte (g),,Rad\nm1,m2,M (g)\n150,165,61\n", "'m1', 'm2' are without a unit, and a line above has one", "m1:g?,m2:g?,M:g"),
+    ("batch --only a --columns m1,m2,M", "Gewichte (g),,Rad\nm1,m2,M (g)\n150,165,61\n", "'m2' is without a unit, and a line above has one", "m1:g,m2:g?,M:g"),
+    ("fit --drop 1m", "Massen in g,,Zeit [s]\nm1,m2 (g),t\n150,165,1.9\n", "'m1' is without a unit, and a line above has one", "m1:g?,m2:g,t"),
+    ("fit --drop 1m", "Massen in g;;t in s;\nlinks;rechts;1;2\n150;165;1,9;2\n160;180;1,5;1,6\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,t:s,?"),
+    ("fit --m1 0 --m2 9g --drop 1m", "Gesamt, gr;Dauer\n150;3\n160;2\n", "t (or a) is missing", "?,?"),
     ("fit --drop 0.7", "Scheibe;61 g;\nLi (g);Re (g);t (s)\n150;165;1,9\n150;175;1,4\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,t:s"),
     ("fit --m1 0 --m2 9g --drop 1 --columns '?'", "no.\tt (s)\tt ideal (s)\n1\t4\n2\t3\n", "its columns are to be decided", "-,t:s"),
     ("batch", "m1,m2,Kąt [°]\n1,3,270\n", "'Kąt [°]' (wrap?) is not read, and may matter", "m1,m2,?"),
@@ -471,7 +477,7 @@ def test_a_title_within_the_rows_begins_other_runs(read: Any) -> None:
 
 def test_a_title_with_a_number_is_no_row(read: Any) -> None:
     """It was the first row of runs, or a heading whose unit was read, in the command that was printed itself."""
-    title, table = "Scheibe (g),61,\n", "A,B,t\n.15,,1.9\n,,1.8\n.16,.17,1.4\n"
+    title, table = "Scheibe,61 g,\n", "A,B,t\n.15,,1.9\n,,1.8\n.16,.17,1.4\n"
     runs = read(title + table.replace("15,", "15,.165"), words="m1+,m2+,t")
     assert [*runs.given["m1"]] == [0.15, 0.16]
     assert ABOVE in runs.remarks[0]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from ..output.text import naming_the_extra
 from ..reading.names import read_quantities
+from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable
 from .solving import ReadColumns, TableTally, Wanted, read_columns, solve_cells
 
@@ -71,7 +72,7 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
             what = f"the table is of type {type(table).__name__}"
             raise ValueError(f"{what}; give a data frame of polars, pandas or dask")
         schema = frame.collect_schema()
-        solve = partial(with_results, columns=read_columns(schema.names(), wanted), wanted=wanted)
+        solve = partial(with_results, columns=read_columns(Sheet(schema.names(), ()), wanted), wanted=wanted)
         if isinstance(frame, pl.DataFrame):
             return cast(Table, solve(frame))
         schema = solve(pl.DataFrame(schema=schema)).schema
@@ -84,7 +85,7 @@ def _solve_pandas(frame: Any, wanted: Wanted) -> Any:
     """Return a frame of pandas with its results; polars would take it as a whole only with pyarrow."""
     import polars as pl
 
-    columns, cells = read_columns([*map(str, frame.columns)], wanted), {}
+    columns, cells = read_columns(Sheet([*map(str, frame.columns)], ()), wanted), {}
     for heading in columns.headings:
         column = frame.iloc[:, heading.place]
         of_numbers = column.dtype.kind in "iuf"  # others may hold numbers and texts

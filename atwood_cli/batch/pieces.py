@@ -16,6 +16,7 @@ from ..numbers.text import in_quotes
 from ..solver.scene import SceneError
 from ..tables.headings import UNREAD, Heading, Naming
 from ..tables.records import GoesOn, find_header, records_of, wrong_width
+from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable, whole_lines
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ class Csv:
     def __init__(
         self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]], naming: Naming
     ):
-        """Read the header, by its ``known`` columns or by place. The rows ``above`` it are left out."""
+        """Read the header, by its ``known`` columns or by place. Titles above it are left out."""
         self.remarks: list[str] = []
         self._texts = map(bytes.decode, whole_lines(blocks, True, self.remarks))
         self._rest = self._whole("", partial(self._below_header, known, naming))
@@ -86,13 +87,14 @@ class Csv:
         if not text.strip():
             raise GoesOn("it is empty")
         layout = find_header(text, known, naming.decisive)
-        self.separator, self.above = layout.separator, layout.above
+        self.separator, self.has_titles = layout.separator, layout.above > 0
         first = layout.above + layout.heads
         records = [*islice((x for x in records_of(text, self.separator) if any(x[2])), first + ROWS_SHOWN)]
         rows = [cells for *_, cells in records]
         width = max(map(len, rows[layout.above : first] or rows[first:]))
-        self.columns = layout.headings(rows, width)
-        self.first_rows = [[*row, *[""] * width][:width] for row in rows[first:]]
+        self.columns, above = layout.headings(rows, width), layout.above_headings(rows)
+        first_rows = [[*row, *[""] * width][:width] for row in rows[first:]]
+        self.begin = Sheet(self.columns, first_rows, above=above)
         line, header, _ = records[first - 1] if first else (1, "", [])
         self._line = line + header.count("\n")
         self.line_end = "\r\n" if records[max(first - 1, 0)][1].endswith("\r\n") else "\n"

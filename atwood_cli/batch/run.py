@@ -31,6 +31,7 @@ from ..solver.quantities import QUANTITIES
 from ..solver.scene import SceneError
 from ..tables.cells import decimal_commas_in
 from ..tables.headings import ABOVE, Heading, listed, read_as, recognised
+from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable, blocks_of, is_packed, is_stream
 from ..tables.workbooks import opened_table
 from .frames import check_polars, with_results
@@ -103,7 +104,7 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
     wanted = job.wanted
     known = partial(recognised, vocabulary=VOCABULARY, named=wanted.naming.named)
     table = Csv(blocks_of(source), known, wanted.naming)
-    columns = read_columns(table.columns, wanted, rows=table.first_rows)
+    columns = read_columns(table.begin, wanted)
     pieces = table.pieces([*columns.headings, *columns.label])
     first = [*islice(pieces, 1)]
     in_first = ((piece.cells.iter_rows(), range(len(columns.headings))) for piece in first)
@@ -155,7 +156,7 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
 
     def headings(keys: Sequence[str]) -> Sequence[Heading]:
         nonlocal columns
-        columns = read_columns(keys, wanted, whole=False)
+        columns = read_columns(Sheet(keys, ()), wanted, whole=False)
         return [*columns.headings, *columns.label]
 
     with _watched(read_ndjson(blocks_of(source), headings, wanted.columns), job, source) as watched:
@@ -201,7 +202,7 @@ def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tall
         # Values of other types say nothing of an input, and Python may have none that are so large.
         texts = (x.to_list() if x.dtype.is_numeric() or x.dtype == pl.String else [""] * len(x) for x in head)
         first = [[*map(str, row)] for row in zip(*texts, strict=True)]
-        columns = read_columns(schema.names(), job.wanted, rows=first)
+        columns = read_columns(Sheet(schema.names(), first), job.wanted)
         head = with_results(pl.DataFrame(schema=schema), columns, job.wanted)
         parts = table.collect_batches(maintain_order=True)
         with progress(parts, total, pl.DataFrame.__len__, pl.DataFrame.__len__) as watched:
@@ -251,7 +252,7 @@ def _reading() -> Iterator[None]:
 def _remarks(columns: ReadColumns, wanted: Wanted, table: Csv | None = None) -> list[str]:
     """Return sentences on how a table was read, if not as usual, and on the units of results then."""
     headings = [heading for heading in columns.headings if heading.place >= 0]
-    above = [ABOVE] if table and table.above else []
+    above = [ABOVE] if table and table.has_titles else []
     how = [*table.remarks, *above] if table else []
     remarks = read_as(headings, table.separator if table else "", columns.comma, how)
     units = _units(wanted)

@@ -98,20 +98,19 @@ class ReadColumns(NamedTuple):
 # Columns
 
 
-def read_columns(
-    columns: Sequence[str], wanted: Wanted, whole: bool = True, rows: Sequence[Sequence[str]] = ()
-) -> ReadColumns:
+def read_columns(sheet: Sheet, wanted: Wanted, whole: bool = True) -> ReadColumns:
     """Find the inputs among the columns. If the table is not ``whole``, a mass without a column has no cells.
 
-    ``rows`` are the first, to show. Raises NotUnderstood if a mass is missing, or a column may mean an input;
-    Unreadable if one has the name of a result.
+    The rows of the sheet are the first, to show. Raises NotUnderstood if a mass is missing, or a column may
+    mean an input; Unreadable if one has the name of a result.
     """
+    columns = sheet.columns
     if clash := [column for column in columns if column in wanted.columns]:
         names = f"{listed(clash)}; leave them out to solve a table of results again, or rename them"
         raise Unreadable(f"it has columns with the names of results: {names}")
     needs = Needs(VOCABULARY, _missing, _doubt)
     given = {x: text for x, text in wanted.given.items() if read_exactly(x, text).number is not None}
-    headings = understood(Sheet(columns, rows), wanted.naming, needs, given, whole)
+    headings = understood(sheet, wanted.naming, needs, given, whole)
     missing = _missing({*given, *(heading.name for heading in headings)})
     if not (headings or missing):
         raise Unreadable(f"no column holds an input; there are {listed(columns)}")

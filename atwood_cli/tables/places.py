@@ -3,14 +3,15 @@
 import re
 import shlex
 from collections import Counter
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 from unicodedata import normalize
 
 from ..numbers.text import without_blanks
 from ..reading.units import symbol_of
-from ..solver.scene import MASSES, SceneError
+from ..solver.scene import MASSES, SceneError, parameter_of
+from .cells import has_unit
 from .headings import (
     LONGEST_HEADING,
     OPEN,
@@ -18,6 +19,7 @@ from .headings import (
     Heading,
     Naming,
     Vocabulary,
+    divisions,
     is_unit,
     listed,
     meaning_of,
@@ -118,6 +120,9 @@ def understood(
         doubts = {i: needs.doubt(sheet, i, has) for i in unread}
         doubts |= {i: named(sheet.columns[i], i) for i in rivals}
         which, what = [doubt for doubt in doubts.values() if doubt], "not read, and may matter"
+    if not which:
+        bare = [named(own.column, own.place) for own in headings if _unit_above(sheet, own)]
+        which, what = bare, "without a unit, and a line above has one"
     if which:
         are, doubtful = "is" if len(which) == 1 else "are", {*rivals, *rivals.values()}
         raise _asked(f"{', '.join(which)} {are} {what}", sheet, naming, needs, given, doubtful)
@@ -130,6 +135,15 @@ def _is_alike(sheet: Sheet, place: int, own: Heading, names: Mapping[str, str]) 
     words, unit = re.split(r"[\W_]+", column[:LONGEST_HEADING]), unit_within(column, own)
     has_name = own.name in map(names.get, words) and sheet.has_numbers(place)
     return has_name and (not unit or is_unit(unit, own))
+
+
+def _unit_above(sheet: Sheet, own: Heading) -> str:
+    """Return the unit above all headings, if not the usual one, of a column that has none, also in cells."""
+    if own.unit or (sheet.rows and all(has_unit(row[own.place]) for row in sheet.rows)):
+        return ""
+    divided = (division for text in sheet.above for division in divisions(without_blanks(text)))
+    texts = (unit or word.strip("()[]") for word, unit, is_loose in divided if not is_loose)
+    return _unit_among((text for text in texts if text != parameter_of(own.name).unit), own)
 
 
 def _asked(
@@ -160,7 +174,9 @@ def _asked(
         except Unreadable:
             read[i], words[i] = UNREAD, OPEN
     for own in headings:
-        word = _word(own, own.name, own.number) + (OPEN if own.place in doubtful else "")
+        unit = _unit_above(sheet, own)
+        word = _word(own._replace(unit=own.unit or unit), own.name, own.number)
+        word += OPEN if unit or own.place in doubtful else ""
         words[own.place] = OPEN if own.name in given else word
         if own.u:
             words[own.u.place] = _word(own.u, own.name, f"{own.number}_err")
@@ -174,7 +190,8 @@ def _asked(
     is_unclear = {*lacking} - {"drop"}
     for i in left:
         fits = [x for x in missing if i in units[x]]
-        may_matter = i in doubtful or (said[i] != UNREAD and needs.doubt(sheet, i, ()))
+        is_merged = missing and repeated and not sheet.columns[i].strip()
+        may_matter = is_merged or i in doubtful or (said[i] != UNREAD and needs.doubt(sheet, i, ()))
         if len(fits) == 1:
             unit, is_sure = units[fits[0]][i], len(units[fits[0]]) == 1 and not may_matter
             words[i] = _short(fits[0]) + (f":{unit}" if unit else "") + ("" if is_sure else OPEN)
@@ -207,8 +224,13 @@ def unit_of_column(sheet: Sheet, place: int, name: str) -> str:
     """Return the symbol of a quantity's unit in the heading of a column, or in its cells, or ""."""
     meaning = Heading(0, "", name)
     in_cells = (match[1] for row in sheet.rows if (match := UNIT_OF_CELL.fullmatch(row[place].strip())))
-    texts = (unit_within(sheet.columns[place], meaning), *in_cells)
-    return next((symbol_of(text) for text in texts if is_unit(text, meaning) and text != "t"), "")
+    return _unit_among([unit_within(sheet.columns[place], meaning), *in_cells], meaning)
+
+
+def _unit_among(texts: Iterable[str], meaning: Heading) -> str:
+    """Return the symbol of the first unit of a quantity, or ""; t is rather a time, and g a mass."""
+    other = "g" if meaning.name == "a" else "t"
+    return next((symbol_of(text) for text in texts if text != other and is_unit(text, meaning)), "")
 
 
 def _word(own: Heading, name: str, end: str) -> str:

@@ -61,6 +61,10 @@ class Layout(NamedTuple):
         columns = ([cell for cell in cells if cell.strip() != "-"] for cells in zip(*padded, strict=True))
         return [without_blanks(" ".join(cells)) for cells in columns] or [""] * width
 
+    def above_headings(self, rows: Sequence[Sequence[str]]) -> list[str]:
+        """Return the cells above the last row of headings."""
+        return [cell for row in rows[: self.above + self.heads][:-1] for cell in row]
+
 
 def find_header(
     text: str, known: Callable[[Sequence[str]], Collection[str]], decisive: Collection[int] = ()

@@ -31,12 +31,13 @@ MISSING = ("nan", "NaN", "None", "<NA>", "NaT", "--")
 
 
 class Sheet(NamedTuple):
-    """A table of texts, its separator, and how it was read."""
+    """A table of texts, its separator, how it was read, and the cells above its last row of headings."""
 
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     separator: str = ""
     remarks: Sequence[str] = ()
+    above: Sequence[str] = ()
 
     @property
     def numbers(self) -> list[int]:
@@ -142,11 +143,15 @@ def read_sheet(text: str, vocabulary: Vocabulary, naming: Naming = NOTHING_SAID)
     layout = find_header(text, known, naming.decisive)
     if layout.above:
         remarks.append(ABOVE)
-    return Sheet(*_rows(text, layout, naming), layout.separator, remarks)
+    columns, rows, above = _rows(text, layout, naming)
+    return Sheet(columns, rows, layout.separator, remarks, above)
 
 
-def _rows(text: str, layout: Layout, naming: Naming) -> tuple[list[str], list[list[str]]]:
-    """Return the headings in a text, and the rows below. Raises Unreadable."""
+def _rows(text: str, layout: Layout, naming: Naming) -> tuple[list[str], list[list[str]], list[str]]:
+    """Return the headings in a text, the rows below, and the cells above the last row of headings.
+
+    Raises Unreadable.
+    """
     first = layout.above + layout.heads
     records = [cells for *_, cells in records_of(text, layout.separator) if any(cells)]
     rows = [row for row in records[first:] if "".join(row).strip()]
@@ -159,4 +164,4 @@ def _rows(text: str, layout: Layout, naming: Naming) -> tuple[list[str], list[li
         if any(map(str.strip, row[width:])) or (by_heading and any(map(str.strip, columns[len(row) :]))):
             raise Unreadable(f"row {number} {wrong_width(len(row), width, layout.separator)}")
         row[width:] = [""] * (width - len(row))
-    return columns, rows
+    return columns, rows, layout.above_headings(records)
