@@ -152,8 +152,11 @@ def test_large_exponentials_enclose(digits: int, power: int, digit: int) -> None
 def test_division_by_what_may_be_zero_asks_for_digits() -> None:
     at = enclosures(20)
     third = at.number(Fraction(1, 3))
-    with pytest.raises(NeedsMoreDigits):
-        at.number(1) / (third - third)
+    for doubtful in (third - third, Enclosure(at, Decimal(0), Decimal(1))):
+        with pytest.raises(NeedsMoreDigits):
+            at.number(1) / doubtful
+    with pytest.raises(ZeroDivisionError):
+        at.number(1) / at.number(0)
 
 
 def test_exact_fractions_refuse_to_leave_the_rationals() -> None:
