@@ -143,17 +143,14 @@ def _parameter(name: str, annotation: Any) -> inspect.Parameter:
 
 def _check(options: Mapping[str, Any]) -> None:
     """Raise SceneError if an option that is given excludes another, or lacks one that it needs."""
-    given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
-    for name, value in given.items():
-        shown = value[0] if isinstance(value, list | tuple) else value
-        if shown is True:
-            shown = None
+    given = [name for name, value in options.items() if value not in (None, False, [], ())]
+    for name in given:
         for other in NO_EFFECT.get(name, "").split():
             if other in given and other != name:
-                raise SceneError(name, shown, f"cannot be used with {flag(other)}; leave one out")
+                raise SceneError(name, None, f"cannot be used with {flag(other)}; leave one out")
         needed = [other for other in NEEDS.get(name, "").split() if other in options]
-        if needed and not given.keys() & needed:
-            raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
+        if needed and not {*given}.intersection(needed):
+            raise SceneError(name, None, f"needs {' or '.join(map(flag, needed))}")
 
 
 def quantity_meanings() -> Mapping[str, str]:
