@@ -18,7 +18,7 @@ from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..solver import arc
 from ..solver.answers import Answers
 from ..solver.scene import SceneError
-from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, saved, typeset
+from .figure import BLUE, FAINT, GREEN, INK, PURPLE, RED, saved, typeset
 from .forms import Picture
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ LONGEST_ON_ARC, LEAST_ON_ARC = 0.9 * BETWEEN_ARROWS, 0.01
 NORMAL_AT, FRICTION_AT = 1.05, 0.9  # distances from the axle at which arrows end and start
 BEYOND_TIP = 0.16  # of an arrow, where its symbol stands
 BETWEEN_WEIGHTS = 18  # characters for which there is room
-ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the axle, and a length
+ROTATION_AT, ACCELERATION = 0.56, 0.4  # a distance from the axle, and a length
 
 
 def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None:
@@ -92,7 +92,7 @@ def save_scene(answers: Answers, picture: Picture, curves: bool = False) -> None
 
 
 def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterator[str]:
-    """Yield sentences on the friction along the arc, and on what is not drawn."""
+    """Yield sentences on the forces, and on what is not drawn."""
     if kind:
         yield say_profile(answers, kind)
         if force := answers["friction_force"]:
@@ -106,10 +106,11 @@ def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterato
         yield f"There are {turns} turns{which}."
     if answers.decided.is_driven and answers["drive_force"] is not None:
         yield f"The motor or the brake, {format_number(answers['drive_force'])} N at the rim, is not drawn."
+    if answers.decided.has_axle_friction:
+        yield "The friction of the axle is not drawn."
     if not answers.decided.ends_hang_down:
         tensions = (f"T{end} = {_number(answers[f'tension_{end}'])} N" for end in "12")
-        yield f"{', '.join(tensions)}."
-        yield "m2 hangs over a guide that is not drawn." if kind else "The mass is not drawn."
+        yield f"{', '.join(tensions)}. What hangs on the string is not drawn."
 
 
 def _forces(answers: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
@@ -126,7 +127,7 @@ def _rim(angle: Any) -> Any:
 
 
 def _draw_pulley(axes: "Axes", answers: Answers, phi: float) -> None:
-    """Draw the pulley with its mass, how it turns, its axle's friction, and the string around it."""
+    """Draw the pulley with its mass, how it turns, and the string around it."""
     scene, around = answers.decided.scene, _rim(np.linspace(0, TURN, RIM_POINTS))
     axes.fill(around.real, around.imag, facecolor="#f0f0f0", edgecolor=FAINT, lw=1)
     axes.plot(0, 0, "o", color=FAINT, ms=3)
@@ -141,19 +142,14 @@ def _draw_pulley(axes: "Axes", answers: Answers, phi: float) -> None:
     clockwise = 1j * np.exp(-1j * np.linspace(-0.6, 0.6, 40))  # as m2 descends
     rim_acceleration = answers["rim_acceleration"]
     if rim_acceleration:
-        _draw_arc(axes, ROTATION_AT * clockwise[:: 1 if rim_acceleration > 0 else -1], PURPLE, "white")
-    if friction := _axle_friction(answers):
-        way = rim_acceleration if answers.decided.is_driven else answers.decided.heavier_side
-        _draw_arc(axes, AXLE_AT * clockwise.conj()[:: 1 if way > 0 else -1], ORANGE, ORANGE)
-        words = f"axle friction\nat the rim\n= {friction} N"
-        axes.text(0, -0.55, words, ha="center", va="center", size=8, color=ORANGE)
+        _draw_motion(axes, ROTATION_AT * clockwise[:: 1 if rim_acceleration > 0 else -1])
 
 
-def _draw_arc(axes: "Axes", path: Any, colour: str, head: str) -> None:
-    """Draw an arrow along points. One of motion is dashed and has an open head, as it is no force."""
-    axes.plot(path.real, path.imag, color=colour, ls=(0, (3, 1.5)) if head == "white" else "-", lw=1.3)
+def _draw_motion(axes: "Axes", path: Any) -> None:
+    """Draw an arrow along points, dashed and with an open head, as it is no force."""
+    axes.plot(path.real, path.imag, color=PURPLE, ls=(0, (3, 1.5)), lw=1.3)
     turned = np.angle(path[-1] - path[-2], deg=True) - 90
-    axes.plot(path[-1].real, path[-1].imag, marker=(3, 0, turned), ms=7, color=colour, mfc=head)
+    axes.plot(path[-1].real, path[-1].imag, marker=(3, 0, turned), ms=7, color=PURPLE, mfc="white")
 
 
 def _pulley(answers: Answers) -> str:
@@ -165,15 +161,6 @@ def _pulley(answers: Answers) -> str:
         return f"I = {_number(scene.I, answers)} kg m²"
     mass = answers["critical_pulley_mass"] if decided.regime == "verge" else decided.pulley_mass
     return "" if mass is None else f"M = {_mass('M', mass, answers)}"
-
-
-def _axle_friction(answers: Answers) -> str:
-    """Return the axle's friction as a force at the rim (N), as much of it as acts; empty if none does."""
-    decided = answers.decided
-    if not decided.has_axle_friction or decided.locked or not decided.heavier_side:
-        return ""
-    held = decided.rim_at_rest if decided.regime == "slip" else decided.axle_holds
-    return _number(answers.settle(lambda m: m.difference if held else m.f), answers)
 
 
 def _number(value: Any, answers: Answers | None = None) -> str:
@@ -244,7 +231,7 @@ def _draw_masses(axes: "Axes", answers: Answers, lengths: Mapping[str, float]) -
         if acceleration:
             centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
             way = -1j * x * (1 if acceleration > 0 else -1) * ACCELERATION
-            _draw_arc(axes, centre + way * np.array([-0.5, 0.5]), PURPLE, "white")
+            _draw_motion(axes, centre + way * np.array([-0.5, 0.5]))
     words = typeset(f"a = {_number(acceleration.copy_abs())} m/s²") if acceleration else "a = 0"
     height = -STRING - LARGER_SIDE - 0.17 - (LONGEST if len(words) > BETWEEN_WEIGHTS else 0)
     axes.text(0, height, words, color=PURPLE, ha="center", va="center")
