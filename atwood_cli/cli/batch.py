@@ -20,13 +20,11 @@ from .options import (
     DONE,
     FALL,
     SCENE,
+    TABLE,
     Columns,
     Expect,
     Force,
-    Labels,
-    Named,
-    Places,
-    SheetName,
+    Layout,
     argument,
     option,
     refuse,
@@ -83,18 +81,15 @@ if there is no row or one that does not meet what is expected. In NDJSON a bad l
 """
 
 
-@with_options(SCENE | FALL)
+@with_options(SCENE | FALL, TABLE)
 def batch(
     context: Context,
     table: Table,
     given: Mapping[str, str | None],
+    layout: Layout,
     *,
     output: OutTable = None,
     from_: From = None,
-    columns: Places = None,
-    column: Named = None,
-    label: Labels = None,
-    sheet: SheetName = None,
     only: Columns = None,
     expect: Expect = None,
     digits: Rounded = None,
@@ -117,11 +112,11 @@ def batch(
     conditions = [*map(read_condition, expect or [])]
     shared = {name: value for name, value in given.items() if value not in (None, OPEN)}
     rounded_to = None if digits is None else read_whole("digits", digits, 1, 17)
-    naming = read_naming(columns or "", column or (), label or (), VOCABULARY)
+    columns, named, labels, sheet = layout
+    naming = read_naming(columns, named, labels, VOCABULARY)
     if naming.filled:
-        raise SceneError(
-            "columns", columns, "fills blank cells by +, which are not given in a table of scenes"
-        )
+        rule = "fills blank cells by +, which are not given in a table of scenes"
+        raise SceneError("columns", columns, rule)
     wanted = Wanted(asked or STANDARD, naming, conditions, shared, rounded_to)
     job = Job(table, kind, output, force, wanted, sheet, markdown)
     tally = TableTally(asked, conditions)

@@ -16,10 +16,8 @@ from .options import (
     DONE,
     FIGURE,
     OUTPUT,
-    Labels,
-    Named,
-    Places,
-    SheetName,
+    TABLE,
+    Layout,
     argument,
     flag,
     option,
@@ -83,20 +81,17 @@ SHARED = {
 """The options of what all runs share."""
 
 
-@with_options(OUTPUT, FIGURE, SHARED)
+@with_options(OUTPUT, FIGURE, TABLE, SHARED)
 def fit(
     context: Context,
     table: Table,
     given: Mapping[str, str | None],
     target: Destination,
     picture: Picture | None,
+    layout: Layout,
     *,
     find: Find = None,
     without: Without = None,
-    columns: Places = None,
-    column: Named = None,
-    label: Labels = None,
-    sheet: SheetName = None,
     only: Only = None,
 ) -> int:
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
@@ -106,8 +101,7 @@ def fit(
     from ..laboratory.report import report_of
 
     try:
-        left_out, words = divided(without or []), columns or ""
-        best = fit_of(table, given, find or [], left_out, words, column or [], label or [], sheet, flag)
+        best = fit_of(table, given, find or [], divided(without or []), *layout, flag)
     except Unreadable as error:
         return refuse(context, table, error)
     if picture is not None:

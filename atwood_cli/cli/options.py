@@ -105,25 +105,21 @@ FALL = {name: MOTION[name] for name in FALLS}
 def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
     """Give a command groups of options by name, which typer sees one by one.
 
-    The command gets those of `results` as ``target``, those of FIGURE as ``picture``, others as ``given``.
+    The command gets those that `READERS` read as one parameter, as ``target``, and others as ``given``.
     """
 
     def taking(command: Command) -> Command:
         parameters = inspect.signature(command).parameters.values()
-        own = [parameter for parameter in parameters if parameter.name not in ("given", "target", "picture")]
+        own = [parameter for parameter in parameters if parameter.name not in ("given", *READERS)]
         taken = {parameter.name for parameter in parameters}
 
         def run(**options: Any) -> int:
             _check(options)
             arguments = {parameter.name: options[parameter.name] for parameter in own}
             if "given" in taken:
-                names = (name for group in groups for name in group if name not in {*OUTPUT, *FIGURE})
+                names = (name for group in groups for name in group if name not in {*OUTPUT, *FIGURE, *TABLE})
                 arguments["given"] = {name: options[name] for name in names}
-            if "target" in taken:
-                arguments["target"] = _read_target(options)
-            if FIGURE in groups:
-                arguments["picture"] = _read_picture(options)
-            return command(**arguments)
+            return command(**arguments, **{x: read(options) for x, read in READERS.items() if x in taken})
 
         first, *others = ([_parameter(*named) for named in group.items()] for group in groups)
         seen = sorted([*first, *own, *chain(*others)], key=attrgetter("kind"))
@@ -188,26 +184,26 @@ Expect = Annotated[
     list[str] | None,
     option("Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."),
 ]
-SheetName = Annotated[
-    str | None, option("Files", "--sheet", metavar="NAME", help="Sheet of a workbook, if not the first.")
-]
-Named = Annotated[
-    list[str] | None,
-    option(
-        "Files",
-        "--column",
-        metavar="NAME=HEADING",
-        help="Say what a column is, as m1='Mass 1 (g)'; repeatable.",
-    ),
-]
-Places = Annotated[
-    str | None,
-    option("Files", "--columns", metavar="WORDS", help="What each column is, as m1:g,m2:g,-,t,t; '?' asks."),
-]
-Labels = Annotated[
-    list[str] | None,
-    option("Files", "--label", metavar="COLUMN", help="Do not read this column; repeatable, or a,b."),
-]
+TABLE: dict[str, Any] = {
+    "columns": Annotated[
+        str | None,
+        option("Files", metavar="WORDS", help="What each column is, as m1:g,m2:g,-,t,t; '?' asks."),
+    ],
+    "column": Annotated[
+        list[str] | None,
+        option("Files", metavar="NAME=HEADING", help="Say what a column is, as m1='Mass 1 (g)'; repeatable."),
+    ],
+    "label": Annotated[
+        list[str] | None,
+        option("Files", metavar="COLUMN", help="Do not read this column; repeatable, or a,b."),
+    ],
+    "sheet": Annotated[
+        str | None, option("Files", metavar="NAME", help="Sheet of a workbook, if not the first.")
+    ],
+}
+"""What the columns of a table are, and where in a workbook it is."""
+Layout = tuple[str, list[str], list[str], str | None]
+"""The values of these."""
 
 
 def refuse(context: typer.Context, source: str, why: "Unreadable") -> int:
@@ -284,6 +280,13 @@ def _read_picture(options: Mapping[str, Any]) -> Picture | None:
     check_picture(picture)
     return picture
 
+
+READERS: Mapping[str, Callable[[Mapping[str, Any]], Any]] = {
+    "target": _read_target,
+    "picture": _read_picture,
+    "layout": lambda x: (x["columns"] or "", x["column"] or [], x["label"] or [], x["sheet"]),
+}
+"""By the parameter of a command, what reads its value of several options."""
 
 # Help
 
