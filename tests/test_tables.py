@@ -253,7 +253,7 @@ ASKED = [
     ("fit", "m1,m2,a,m_1\n1,2,3,4\n", "column 'm_1' holds m1, as 'm1' does; read one", "m1,m2,a,?"),
     ("fit", "m1,m2,t1,time 1\n1,2,3,4\n", "column 'time 1' holds time, as 't1' does; are they repeats?", "m1,m2,t1,?|drop"),
     ("fit", "m1,m2,a,Δm\n1,2,3,4\n", "'Δm' is not read, and may matter", "m1,m2,a,?"),
-    ("fit", "m1,m2,a,t_err\n1,2,3,4\n", "column 't_err' could be an uncertainty, but no column is what it would be of", "m1,m2,a,?"),
+    ("fit", "m1,m2,a,t_err\n1,2,3,4\n", "column 't_err' could be an uncertainty, but of no column that is read (- leaves it unread)", "m1,m2,a,?"),
     ("fit", "m1,m2,a,±,u(a)\n1,2,3,4,5\n", "column 'u(a)' is a second uncertainty of a", "m1,m2,a,a_err,?"),
     ("fit --drop 1m --column 't=Tempo (furlong/h)'", "m1,m2,Tempo (furlong/h)\n1,2,3\n", "column 'Tempo (furlong/h)' has the unit 'furlong/h'; it takes s, ms, us, min, h", "m1,m2,?"),
     ("fit --drop 1m --column 't=Weg (cm)'", "m1,m2,Weg (cm)\n1,2,3\n", "column 'Weg (cm)' has the unit 'cm'; it takes s, ms, us, min, h", "m1,m2,?"),
@@ -284,7 +284,7 @@ ASKED = [
     ("fit --drop 0.9", "m1 (g),m2 (g),t (s),t obs (s),t max,v after t (m/s)\n150,165,1.9,2,3,1\n", "'t obs (s)', 't max' are not read, and may matter", "m1:g,m2:g,t:s?,?,?"),
     ("fit", "m1 (g),m2 (g),filmed acceleration (cm/s2),a (m/s2),h est\n150,165,35,0.4,1\n", "'filmed acceleration (cm/s2)' is not read, and may matter", "m1:g,m2:g,?,a:m/s2?"),
     ("fit --drop 0.5", "m1 (g),m2 (g),t 1st,t 2nd,t\n200,220,1.7,1.74,1.72\n", "column 't' stands beside 't 1st', and one may be computed, as a mean is", "m1:g,m2:g,t1,t2,?"),
-    ("fit --drop 1m", "Wurf;0,02;0,03\n1;1,4;1,2\n", "m1 (0 if nothing hangs there), m2, t (or a) are missing; if headings that are numbers are loads, type one command a load, as --columns drop:m,-,t --m2 60g", "-,?,?"),
+    ("fit --drop 1m", "Wurf;0,02;0,03\n1;1,4;1,2\n", "m1 (0 if nothing hangs there), m2, t (or a) are missing; if headings that are numbers are loads, make each load rows of its own, or type one command a load, as --columns drop:m,-,t --m2 60g", "-,?,?"),
     ("fit --m1 0 --m2 50g --drop 1m", "T (s),T (s)\n1,2\n", "column 'T (s)' holds time, as another of that heading does; are they repeats?", "t:s,?"),
     ("fit --m1 0 --m2 50g --drop 1m --column 't=T(s)'", "T(s),T(s)\n1,2\n", "2 columns have the heading 'T(s)'", "t:s,?"),
     ("fit --drop 1m", "m1 (g);m2 (g);acc. [m/s²];durée [s]\n90;95;0,2;3,2\n90;99;0,4;2,3\n", "t (or a) is missing", "m1:g,m2:g,-,t:s"),
@@ -295,6 +295,7 @@ ASKED = [
     ("fit --drop 1m", "Massen in g,,Zeit [s]\nm1,m2 (g),t\n150,165,1.9\n", "'m1' is without a unit, and a line above has one", "m1:g?,m2:g,t"),
     ("fit --drop 1m", "Massen in g;;t in s;\nlinks;rechts;1;2\n150;165;1,9;2\n160;180;1,5;1,6\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,t:s,?"),
     ("fit --m1 0 --m2 9g --drop 1m", "Gesamt, gr;Dauer\n150;3\n160;2\n", "t (or a) is missing", "?,?"),
+    ("fit --m1 0", "drop (m);m2 = 0,03 kg;m2 = 0,05 kg\n0,4;1,2;0,9\n0,6;1,5;1,1\n", "m2, t (or a) are missing", "drop:m,?,?"),
     ("fit --drop 0.7", "Scheibe;61 g;\nLi (g);Re (g);t (s)\n150;165;1,9\n150;175;1,4\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,t:s"),
     ("fit --m1 0 --m2 9g --drop 1 --columns '?'", "no.\tt (s)\tt ideal (s)\n1\t4\n2\t3\n", "its columns are to be decided", "-,t:s"),
     ("batch", "m1,m2,Kąt [°]\n1,3,270\n", "'Kąt [°]' (wrap?) is not read, and may matter", "m1,m2,?"),
@@ -330,7 +331,7 @@ BY_BLANKS, IN_WORDS = (
 @pytest.mark.parametrize("options", ["", "--columns=-", "--columns=?", "--columns=m2:g --m1=?"])
 def test_a_table_without_columns_of_numbers_is_to_be_written_anew(options: str) -> None:
     """The command that was printed led back to itself."""
-    anew = "no column has such numbers: write a heading above each, as m1 (g),m2 (g), and one number a cell\n"
+    anew = "no column has such numbers: write a heading above each, as m1 (g),m2 (g), one number a cell, and a comma, a semicolon or a tab between cells\n"
     for table in (BY_BLANKS, IN_WORDS) if "m2" not in options else (BY_BLANKS,):
         ran = called(["fit", "-", "--drop", "80cm", *options.split()], table)
         assert (ran.status, ran.out) == (1, "")

@@ -23,7 +23,7 @@ from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable
 
 Kind = Literal["a", "time"]
-ONE_LOAD = "type one command a load, as --columns drop:m,-,t --m2 60g"
+ONE_LOAD = "make each load rows of its own, or type one command a load, as --columns drop:m,-,t --m2 60g"
 MEASURED = {"a": "acceleration", "time": "time"}
 """The quantities that are measured, which may be repeated in further columns."""
 WORDS = {"m1": "m1", "m2": "m2", "drop": "drop h height", "a": "a acceleration", "time": "t time"}

@@ -230,24 +230,22 @@ def _means_among_repeats(runs: Runs) -> list[str]:
     words = sorted({word for cells in rows.values() for word in cells})
     whole = [cells for cells in rows.values() if len(cells) == len(words)]
     for word in words:
-        if _are_means([(cells[word], [cells[x] for x in words if x != word]) for cells in whole]):
+        if _end_in_means([[*(cells[x] for x in words if x != word), cells[word]] for cells in whole]):
             what = f"in each row {word} is the mean of the other repeats"
             return [f"{what}; if it was computed, it is no repeat: leave it unread."]
-    repeated = [used for run in runs.rows if len(used := [row for row in run if row in rows]) > 2]
-    for what, blocks in (("in each run the last row", repeated), ("the last row", [sorted(rows)])):
-        last = [(x, word, others) for *others, x in blocks for word in rows[x]]
-        if _are_means(
-            [(rows[x][word], [rows[y][word] for y in ys if word in rows[y]]) for x, word, ys in last]
-        ):
+    of_runs = [used for run in runs.rows if len(used := [row for row in run if row in rows]) > 2]
+    for what, blocks in (("in each run the last row", of_runs), ("the last row", [sorted(rows)])):
+        ends = [(word, block) for block in blocks for word in rows[block[-1]]]
+        if _end_in_means([[rows[x][word] for x in block if word in rows[x]] for word, block in ends]):
             left_out = in_words(*(block[-1] for block in blocks))
             return [f"{what} is the mean of the others; if it was computed, leave out {left_out}."]
     return []
 
 
-def _are_means(pairs: Sequence[tuple[float, Sequence[float]]]) -> bool:
-    """Decide whether each number is the mean of the others beside it, more often than by chance."""
-    step, chance = _step(value for value, _ in pairs), 1.0
-    for value, others in pairs:
+def _end_in_means(blocks: Sequence[Sequence[float]]) -> bool:
+    """Decide whether the last number of each block is the mean of the others, more often than by chance."""
+    step, chance = _step(block[-1] for block in blocks), 1.0
+    for *others, value in blocks:
         if len(others) < 2 or abs(value - sum(others) / len(others)) > 0.51 * step:
             return False
         chance *= min(1.0, step / (2.5 * float(np.std(others)) or step))  # at the peak of a normal density

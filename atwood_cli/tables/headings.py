@@ -314,7 +314,7 @@ def _add_uncertainty(headings: dict[tuple[str, str], Heading], u: Heading) -> No
         if (own.name == u.name and u.number in ("", own.number) if u.name else own.place == u.place - 1)
     ]
     if not owners:
-        raise refused(u.column, "could be an uncertainty, but no column is what it would be of")
+        raise refused(u.column, "could be an uncertainty, but of no column that is read (- leaves it unread)")
     for own in owners:
         if own.u:
             raise refused(u.column, f"is a second uncertainty of {own.name}")

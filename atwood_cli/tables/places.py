@@ -36,7 +36,8 @@ UNIT_OF_CELL = re.compile(r"[\W\d]*(.*?)[)\]]?")
 """A cell, or what stands where units do: 150 g, (cm)."""
 SEVERAL = re.compile(r"\d\s+[-+.,]?\d")
 NO_SUCH_NUMBERS = (
-    "no column has such numbers: write a heading above each, as m1 (g),m2 (g), and one number a cell"
+    "no column has such numbers: write a heading above each, as m1 (g),m2 (g), one number a cell,"
+    " and a comma, a semicolon or a tab between cells"
 )
 LACKING = {"m1": "m1 (0 if nothing hangs there)", "time": "t (or a)"}
 """What is missing, in other words than its name."""
@@ -198,6 +199,8 @@ def _asked(
         elif fits or is_unclear or may_matter:
             words[i] = OPEN
     is_by_blanks = len(words) == 1 and any(SEVERAL.search(row[0]) for row in sheet.rows)
+    if is_unclear & {*repeated} and OPEN not in words:  # one that may be a mass may be a time
+        words = [OPEN if i in left else word for i, word in enumerate(words)]
     if is_by_blanks or (is_unclear & {*repeated} and OPEN not in words):
         return Unreadable(f"{why}; {NO_SUCH_NUMBERS}")
     is_open = OPEN in [words[i] for i in left] and [*missing] != ["drop"]
