@@ -65,16 +65,19 @@ def diagnosed(fit: Fitted) -> Fitted:
     cells, rows, clean, line = _far(fit)
     causes, as_good = _repairs(clean, _freed(clean))
     outliers = _named(fit, cells | rows if line.chi2 < as_good else cells)
-    return fit._replace(outliers=outliers, causes=_in_words(causes))
+    return fit._replace(outliers=outliers, cause=_in_words(causes))
 
 
 def contradiction(fit: Fitted) -> str:
-    """Say why no pulley explains a fit: outliers, runs that are held, causes, or what to check."""
-    found, held = diagnosed(fit), np.flatnonzero(fit.used)[~moves(fit.data, fit.values)].tolist()
-    if held and not found.outliers:
+    """Say why no pulley explains a fit: outliers without which one does, runs that are held, causes."""
+    cells, rows, *_ = _far(fit)
+    with suppress(CannotSeparate):
+        if (cells or rows) and _is_sound(_without(fit, cells | rows)):
+            return "; ".join(message for _, message in _named(fit, cells | rows))
+    if held := np.flatnonzero(fit.used)[~moves(fit.data, fit.values)].tolist():
         return f"{fit.runs.rows_in_words(*held)} would not move, as the fitted axle holds that; {CHECK}"
-    words = [message for _, message in found.outliers] or found.causes
-    return "; ".join(words) or impossible(fit.runs, fit.used, fit.shared, fit.names)[0] or CHECK
+    causes = _in_words(_repairs(fit, _freed(fit))[0])
+    return causes or impossible(fit.runs, fit.used, fit.shared, fit.names)[0] or CHECK
 
 
 # What may be wrong in all runs
@@ -137,9 +140,9 @@ def _repairs(fit: Fitted, freed: Mapping[str, Fitted]) -> tuple[list[Fitted], fl
     return inertia if is_certain else [], inf
 
 
-def _in_words(causes: Sequence[Fitted]) -> list[str]:
+def _in_words(causes: Sequence[Fitted]) -> str:
     which = "; they cannot tell which" if len(causes) > 1 else ""
-    return [f"the runs fit better if {', or '.join(map(_cause, causes))}{which}"] if causes else []
+    return f"the runs fit better if {', or '.join(map(_cause, causes))}{which}" if causes else ""
 
 
 def _cause(freed: Fitted) -> str:
@@ -157,18 +160,18 @@ def _cause(freed: Fitted) -> str:
     return f"{words} ({without}{shared.option('find', ','.join(freed.names))})"
 
 
-def unseen_delay(fit: Fitted) -> list[str]:
-    """Say that runs cannot show a delay of all times."""
+def unseen_delay(fit: Fitted) -> str:
+    """Say that runs cannot show a delay of all times, or ""."""
     one, gives = _freed(fit).get("delay"), ""
     is_shown = one and one.line.times * one.line.u[-1] <= WIDE_DELAY
     if fit.runs.kind != "time" or "delay" in fit.names or is_shown:
-        return []
+        return ""
     if one and _is_plausible(one):
         value, _ = published(one.values["delay"], one.line.u[-1])
         gives = f" ({fit.shared.option('find', ','.join(one.names))} gives {value} s)"
     wider = "More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it"
     late = f"the runs cannot show whether all times are too long by a delay{gives}"
-    return [f"{late}; the results assume none. {wider}"]
+    return f"{late}; the results assume none. {wider}"
 
 
 # Outliers

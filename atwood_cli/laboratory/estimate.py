@@ -237,7 +237,7 @@ class Fitted(NamedTuple):
 
     ``line`` is the linear fit of the measurements at these values. Something can be expected of all runs that
     are ``shown``; the others of these are left out. ``outliers`` are runs, with a message on each, and
-    ``causes`` messages on what may be wrong in all runs.
+    ``cause`` says what may be wrong in all runs.
     """
 
     runs: Runs
@@ -250,7 +250,7 @@ class Fitted(NamedTuple):
     line: Line
     results: Mapping[str, Result] = {}
     outliers: Sequence[tuple[int, str]] = ()
-    causes: Sequence[str] = ()
+    cause: str = ""
 
 
 def rough_fit(runs: Runs, used: Selection, shared: Conditions, names: Sequence[str]) -> Fitted:

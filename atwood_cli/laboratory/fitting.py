@@ -113,8 +113,8 @@ def fitted(runs: Runs, shared: Conditions, names: Sequence[str]) -> Fitted:
         raise CannotSeparate(f"{doubt or error}{how}") from None
     fit = fit._replace(shown=shown) if columns else diagnosed(fit._replace(shown=shown))
     more = [f"{doubt}."] if doubt and not fit.outliers else []
-    causes = fit.causes if fit.causes or fit.outliers or columns else unseen_delay(fit)
-    return fit._replace(runs=runs._replace(doubts=[*runs.doubts, *more]), causes=causes)
+    cause = fit.cause if fit.cause or fit.outliers or columns else unseen_delay(fit)
+    return fit._replace(runs=runs._replace(doubts=[*runs.doubts, *more]), cause=cause)
 
 
 def _with_results(runs: Runs, used: Selection, shared: Conditions, names: Sequence[str]) -> Fitted:

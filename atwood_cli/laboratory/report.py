@@ -85,9 +85,9 @@ def conditions(fit: Fitted) -> str:
 
 def notes_of(fit: Fitted) -> tuple[list[str], list[str], list[str]]:
     """Return the verdict and warnings, how the runs were read and scatter, and what may be wrong in all."""
-    messages = [message for _, message in fit.outliers], fit.causes
-    outliers, causes = ([f"{_capital(words)}." for words in some] for some in messages)
+    outliers = [f"{_capital(message)}." for _, message in fit.outliers]
     doubts, remarks, unused = (map(_capital, x) for x in (fit.runs.doubts, fit.runs.remarks, fit.runs.unused))
+    causes = [f"{_capital(fit.cause)}."] if fit.cause else []
     return [verdict(fit), *doubts, *outliers], [*remarks, *unused, _scatter(fit)], causes
 
 

@@ -153,7 +153,7 @@ def given_as(**typed: str) -> Conditions:
 
 def cause_of(fit: Fitted) -> str:
     """What is said to repair the fit, "" if nothing is."""
-    return next((words for words in fit.causes if "fit better if" in words), "")
+    return fit.cause if "fit better if" in fit.cause else ""
 
 
 def expected(kind: Kind, l: Any, h: Any, c: Any, f: Any, g: Any = G, drop: Any = DROP) -> Any:
