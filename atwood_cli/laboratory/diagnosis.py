@@ -83,10 +83,10 @@ def contradiction(fit: Fitted) -> str:
 # What may be wrong in all runs
 
 
-def _freed(fit: Fitted) -> dict[str, Fitted]:
+def _freed(fit: Fitted, some: Sequence[str] = FITTED) -> dict[str, Fitted]:
     """Return the fits of one more quantity, the last of their names, where the runs determine it, too."""
     freed = dict[str, Fitted]()
-    for name in (x for x in FITTED if x not in fit.names and (x != "delay" or fit.runs.kind == "time")):
+    for name in (x for x in some if x not in fit.names and (x != "delay" or fit.runs.kind == "time")):
         names, known = [*fit.names, name], {x: fit.shared.values[x] for x in fit.shared.values if x != name}
         if fit.line.dof > 1 and separates(fit.data, fit.shared.values, names):
             with suppress(CannotSeparate, ZeroDivisionError):
@@ -162,7 +162,7 @@ def _cause(freed: Fitted) -> str:
 
 def unseen_delay(fit: Fitted) -> str:
     """Say that runs cannot show a delay of all times, or ""."""
-    one, gives = _freed(fit).get("delay"), ""
+    one, gives = _freed(fit, ["delay"]).get("delay"), ""
     is_shown = one and one.line.times * one.line.u[-1] <= WIDE_DELAY
     if fit.runs.kind != "time" or "delay" in fit.names or is_shown:
         return ""
