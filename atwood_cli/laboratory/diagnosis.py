@@ -102,8 +102,7 @@ def is_negative(name: str, value: float, u: float, times: float = 2.0) -> bool:
 
 def _is_sound(fit: Fitted) -> bool:
     """Decide if a pulley explains a fit, and more runs than are needed support it."""
-    pairs = zip(fit.names, fit.line.u, strict=True)
-    negative = any(is_negative(x, fit.values[x], u) for x, u in pairs)
+    negative = any(is_negative(x, fit.values[x], u) for x, u in zip(fit.names, fit.line.u, strict=True))
     return fit.line.dof > 0 and not negative and bool(moves(fit.data, fit.values).all())
 
 
@@ -190,10 +189,9 @@ def _far(fit: Fitted) -> tuple[Distances, Distances, Fitted, Line]:
     with suppress(CannotSeparate):
         if 0 < len(run_of) - len(runs.rows) < FEW_REPEATS:
             given, u = ({x: column[run_of] for x, column in some.items()} for some in (runs.given, runs.u))
-            single = runs._replace(
-                given=given, u=u, left_out=runs.left_out[run_of], run=np.arange(len(run_of))
-            )
-            clean, run_of = best_fit(single, fit.used[run_of], fit.shared, fit.names), single.run
+            apart = np.arange(len(run_of))
+            single = runs._replace(given=given, u=u, left_out=runs.left_out[run_of], run=apart)
+            clean, run_of = best_fit(single, fit.used[run_of], fit.shared, fit.names), apart
         elif cells := _far_repeats(fit):
             clean = _without(fit, cells)
     far, line = _far_runs(clean)

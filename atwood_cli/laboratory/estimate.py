@@ -278,5 +278,4 @@ def best_fit(runs: Runs, used: Selection, shared: Conditions, names: Sequence[st
             )
     if not fits:
         raise CannotSeparate
-    ranks = [(moves(fit.data, fit.values).all(), round(fit.line.likelihood, 6)) for fit in fits]
-    return fits[ranks.index(max(ranks))]
+    return max(fits, key=lambda fit: (moves(fit.data, fit.values).all(), round(fit.line.likelihood, 6)))
