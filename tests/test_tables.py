@@ -484,6 +484,8 @@ def test_a_title_with_a_number_is_no_row(read: Any) -> None:
     assert ABOVE in runs.remarks[0]
     with pytest.raises(Unreadable, match="row 1: m2 is missing"):
         read(title + table, words="m1+,m2+,t")
+    one = "fit - --m1 0 --m2 61g --drop 1m --axle 0 --columns -,t --csv".split()
+    assert "1 run, 2 times" in called(one, b"Rad:;61 g;\nNr;lap;v\n1;1,9;1\n2;1,8;1\n").err
     headed = "Massen (g),,Zeit (ms)\n" + table.replace("15,", "150,165")
     assert read(headed, words="m1:g+,m2:g+,t").values[0] == 0.0019
 

@@ -85,8 +85,9 @@ def find_header(
         if not any(counts):
             raise GoesOn("it has no numbers in the columns that --columns reads")
         full = counts.index(max(counts))
-        worded = [i for i in range(full) if not counts[i] and all(read[i])]  # a title above may have numbers
-        first = worded[-1] + 1 if worded else next(i for i, count in enumerate(counts) if count)
+        worded = [i for i, count in enumerate(counts[:-1]) if not count and all(read[i])]
+        heads = [i for i in worded if i < full] or [i for i in worded if i == full + 1]  # below a title
+        first = heads[-1] + 1 if heads else next(i for i, count in enumerate(counts) if count)
         above = max(first - 1, 0)
         if above and not counts[above - 1] and any(rows[above - 1][1:]):
             above -= 1
@@ -99,8 +100,8 @@ def find_header(
                 count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
                 is_known = count > 1 or sum(map(bool, row)) > 1  # a title may have the name of a quantity
                 rank = count if is_known else 0, words, separator == usual, len(row)
-                heads = (1 + are_units(below)) if words else 0
-                headers.append((rank, Layout(separator, above, heads, count)))
+                levels = (1 + are_units(below)) if words else 0
+                headers.append((rank, Layout(separator, above, levels, count)))
                 if count > 1:
                     break
     return max(headers, key=lambda header: header[0], default=((), Layout(SEPARATORS[0], 0, 1)))[1]
