@@ -386,7 +386,7 @@ def test_tables_of_every_form_give_what_they_were_made_with(form: str) -> None:
 
 def test_nothing_is_left_out_in_silence(read: Any) -> None:
     """A label, a column to the right, rows of words, and a column that is a mean of the others."""
-    table = "Team,m1,m2,t1,t2,t3,t mean\n1.5,1,2,3,5,4,7\n2.5,1,3,2,2.5,2.25,8\n3.5,1,4,1.9,2,1.95,9\nΣx,1,4,1,1,1,\n"
+    table = "Team,m1,m2,t1,t2,t3,t mean\n1.5,1,2,3,5,4,7\n2.5,1,3,2,2.5,2.25,8\n3.5,1,4,1.9,2,1.95,9\nΣx,1,4,1,1,1,\nNA,1,5,1.7,1.8,1.75,x\n"
     assert read(table).unused == [
         "not read: 'Team', 't mean'.",
         "row 4: not used, as 'Team' has a word there, and most rows a number.",

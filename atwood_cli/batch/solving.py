@@ -38,7 +38,7 @@ from ..tables.headings import (
     places_of,
     unit_within,
 )
-from ..tables.places import Needs, understood
+from ..tables.places import understood
 from ..tables.records import LIKE_NUMBER
 from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable
@@ -108,10 +108,9 @@ def read_columns(sheet: Sheet, wanted: Wanted, whole: bool = True) -> ReadColumn
     if clash := [column for column in columns if column in wanted.columns]:
         names = f"{listed(clash)}; leave them out to solve a table of results again, or rename them"
         raise Unreadable(f"it has columns with the names of results: {names}")
-    needs = Needs(VOCABULARY, _missing, _doubt)
     given = {x: text for x, text in wanted.given.items() if read_exactly(x, text).number is not None}
-    headings = understood(sheet, wanted.naming, needs, given, whole)
-    missing = _missing({*given, *(heading.name for heading in headings)})
+    headings = understood(sheet, wanted.naming, VOCABULARY, _doubt, given, whole)
+    missing = [x for x in MASSES if x not in {*given, *(heading.name for heading in headings)}]
     if not (headings or missing):
         raise Unreadable(f"no column holds an input; there are {listed(columns)}")
     not_read = [i for i in range(len(columns)) if i not in places_of(headings)]
@@ -119,10 +118,6 @@ def read_columns(sheet: Sheet, wanted: Wanted, whole: bool = True) -> ReadColumn
     label = [Heading(0, columns[0], LABEL)] if has_label else []
     headings += [Heading(-1, mass, mass) for mass in missing]
     return ReadColumns(headings, [named(columns[i], i) for i in not_read], label=label)
-
-
-def _missing(has: Collection[str]) -> list[str]:
-    return [mass for mass in MASSES if mass not in has]
 
 
 def _doubt(sheet: Sheet, place: int, has: Collection[str]) -> str:

@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import Literal, NamedTuple
 
-from ..solver.scene import INPUTS, MASSES, Input
+from ..solver.scene import INPUTS, Input
 from ..tables.cells import EMPTY, decimal_commas_in, has_unit
 from ..tables.headings import (
     LONGEST_HEADING,
@@ -18,7 +18,7 @@ from ..tables.headings import (
     places_of,
     recognised,
 )
-from ..tables.places import Needs, understood
+from ..tables.places import understood
 from ..tables.sheets import Sheet
 from ..tables.sources import Unreadable
 
@@ -64,12 +64,11 @@ def columns_of(sheet: Sheet, naming: Naming, given: Mapping[str, Input]) -> Colu
     first, is_headed = [row[0] for row in sheet.rows], len(recognised(sheet.columns, VOCABULARY)) > 1
     if not (naming.words or is_headed) and len(recognised(first, VOCABULARY)) > 1:
         raise Unreadable("its runs are columns: make each run a row, below headings, as m1 (g),m2 (g),t (s)")
-    if sum(bool(re.fullmatch(r"\d*[.,]\d+", column)) for column in sheet.columns) > 1:
-        sheet = sheet._replace(
-            remarks=[*sheet.remarks, f"if headings that are numbers are loads, {ONE_LOAD}"]
-        )
+    is_load = sum(bool(re.fullmatch(r"\d*[.,]\d+", column)) for column in sheet.columns) > 1
+    loads = [f"if headings that are numbers are loads, {ONE_LOAD}"] if is_load else []
     typed = {x: str(read.given) for x, read in given.items() if read.given is not None}
-    headings = understood(sheet, naming, Needs(VOCABULARY, _missing, _doubt), typed)
+    asked = sheet._replace(remarks=[*sheet.remarks, *loads])
+    headings = understood(asked, naming, VOCABULARY, _doubt, typed)
     places = places_of(headings)
     numbers = [] if 0 in places else sheet.numbers
     others = [i for i in range(1 if numbers else 0, len(sheet.columns)) if i not in places]
@@ -81,13 +80,6 @@ def columns_of(sheet: Sheet, naming: Naming, given: Mapping[str, Input]) -> Colu
     with_units = [x for x in places if all(row[x] in EMPTY or has_unit(row[x]) for row in sheet.rows)]
     rows = numbers or range(1, len(sheet.rows) + 1)
     return Columns(headings, kind, rows, bool(numbers), comma, with_units, unread)
-
-
-def _missing(has: Collection[str]) -> list[str]:
-    """Return what runs need beside these: both masses, and a, or t with the height of fall."""
-    missing = [mass for mass in MASSES if mass not in has]
-    missing += ["time", "a"] if MEASURED.keys().isdisjoint(has) else []
-    return missing if {"a", "drop"} & {*has} else [*missing, "drop"]
 
 
 def _doubt(sheet: Sheet, place: int, _: Collection[str]) -> str:

@@ -29,6 +29,7 @@ STATISTIC = re.compile(
 )
 """The cells by which a row is known to be computed from others, also where no row has a number there."""
 LIKE_WORD = re.compile(r"\D*(?:[^\W\d_]\W*[^\W\d_]|[^\W\d_a-zA-Z])\D*")
+"""A cell with a word; one letter may be a mark."""
 NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
 LARGE_MASSES = 0.5, "some masses are 0.5 kg or more", "g"
 LARGE = {
@@ -333,8 +334,9 @@ def _rows_by_words(sheet: Sheet, places: Iterable[int]) -> dict[int, str]:
     """Return why rows with a word, as of a mean, where most have a number are no runs, by their places."""
     why = dict[int, str]()
     for place in places:
-        words = [i for i, row in enumerate(sheet.rows) if LIKE_WORD.fullmatch(row[place])]
-        if sum(bool(LIKE_NUMBER.match(row[place])) for row in sheet.rows) > len(words):
+        cells = [row[place].strip() for row in sheet.rows]
+        words = [i for i, cell in enumerate(cells) if cell not in EMPTY and LIKE_WORD.fullmatch(cell)]
+        if sum(map(bool, map(LIKE_NUMBER.match, cells))) > len(words):
             what = f"{named(sheet.columns[place], place)} has a word there, and most rows a number"
             why |= dict.fromkeys(words, what)
     return why

@@ -5,7 +5,7 @@ import shlex
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
-from typing import NamedTuple
+from functools import partial
 from unicodedata import normalize
 
 from ..numbers.text import without_blanks
@@ -41,19 +41,10 @@ NO_SUCH_NUMBERS = (
 )
 LACKING = {"m1": "m1 (0 if nothing hangs there)", "time": "t (or a)"}
 """What is missing, in other words than its name."""
+Doubt = Callable[[Sheet, int, Collection[str]], str]
+"""Names the column in a place that is not read if it may matter beside names that are there, else ""."""
 A_NAMING = r""" --(?:\w+ '\?'|(?:columns?|label)[ =](?:'[^']*'|"[^"]*"|[^\s'"])+)"""
 """An option of a command line that says what columns are, or is open."""
-
-
-class Needs(NamedTuple):
-    """What a command needs of a table: its vocabulary, and what is missing beside names that are there.
-
-    ``doubt`` names the column in a place if it may matter beside them, and is "" else.
-    """
-
-    vocabulary: Vocabulary
-    missing: Callable[[Collection[str]], Sequence[str]]
-    doubt: Callable[[Sheet, int, Collection[str]], str]
 
 
 class NotUnderstood(Unreadable):
@@ -92,49 +83,64 @@ class NotUnderstood(Unreadable):
 
 
 def understood(
-    sheet: Sheet, naming: Naming, needs: Needs, given: Mapping[str, str], whole: bool = True
+    sheet: Sheet,
+    naming: Naming,
+    vocabulary: Vocabulary,
+    doubt: Doubt,
+    given: Mapping[str, str],
+    whole: bool = True,
 ) -> list[Heading]:
     """Return the columns that hold quantities, beside what is ``given`` for all rows.
 
     A table that is not ``whole`` may lack some. Raises NotUnderstood, Unreadable, SceneError.
     """
+    ask = partial(_asked, sheet=sheet, naming=naming, vocabulary=vocabulary, doubt=doubt, given=given)
     if naming.is_open:
-        raise _asked("its columns are to be decided", sheet, naming, needs, given)
+        raise ask("its columns are to be decided")
     try:
         said = naming.of(sheet.columns, whole)
-        headings = read_headings(sheet.columns, needs.vocabulary, said)
+        headings = read_headings(sheet.columns, vocabulary, said)
     except Unreadable as error:
         if naming.words:
             raise SceneError("columns", None, f"does not fit: {error}") from None
-        raise _asked(str(error), sheet, naming, needs, given) from None
+        raise ask(str(error)) from None
     has, places = {own.name for own in headings}, places_of(headings)
     if double := [x for x in given if x in has]:
         raise SceneError(double[0], given[double[0]], "is a column of the table, too; leave one out")
     has = {*given, *has} if whole else set()
-    which, what = [LACKING.get(x, x) for x in needs.missing(has) if x != "a"] if whole else [], "missing"
+    missing = _missing(has, vocabulary) if whole else []
+    which, what = [LACKING.get(x, x) for x in missing if x != "a"], "missing"
     rivals = dict[int, int]()
     if not which:
         unread = [i for i, word in enumerate(said) if i not in places and word != UNREAD]
-        names = needs.vocabulary.names
-        measured = [own for own in headings if own.name in needs.vocabulary.repeated and not own.number]
-        rivals = {i: own.place for i in unread for own in measured if _is_alike(sheet, i, own, names)}
-        doubts = {i: needs.doubt(sheet, i, has) for i in unread}
+        measured = [own for own in headings if own.name in vocabulary.repeated and not own.number]
+        rivals = {i: own.place for i in unread for own in measured if _is_alike(sheet, i, own, vocabulary)}
+        doubts = {i: doubt(sheet, i, has) for i in unread}
         doubts |= {i: named(sheet.columns[i], i) for i in rivals}
-        which, what = [doubt for doubt in doubts.values() if doubt], "not read, and may matter"
+        which, what = [*filter(None, doubts.values())], "not read, and may matter"
     if not which:
         bare = [named(own.column, own.place) for own in headings if _unit_above(sheet, own)]
         which, what = bare, "without a unit, and a line above has one"
     if which:
         are, doubtful = "is" if len(which) == 1 else "are", {*rivals, *rivals.values()}
-        raise _asked(f"{', '.join(which)} {are} {what}", sheet, naming, needs, given, doubtful)
+        raise ask(f"{', '.join(which)} {are} {what}", doubtful=doubtful)
     return headings
 
 
-def _is_alike(sheet: Sheet, place: int, own: Heading, names: Mapping[str, str]) -> bool:
+def _missing(has: Collection[str], vocabulary: Vocabulary) -> list[str]:
+    """Return what is needed beside these: both masses, and of runs a, or t with the height of fall."""
+    missing = [mass for mass in MASSES if mass not in has]
+    if vocabulary.repeated and "a" not in has:
+        missing += ["time", "a"] if "time" not in has else []
+        missing += ["drop"] if "drop" not in has else []
+    return missing
+
+
+def _is_alike(sheet: Sheet, place: int, own: Heading, vocabulary: Vocabulary) -> bool:
     """Decide whether a heading has the name of what was measured, too, so that either may be computed."""
     column = sheet.columns[place]
     words, unit = re.split(r"[\W_]+", column[:LONGEST_HEADING]), unit_within(column, own)
-    has_name = own.name in map(names.get, words) and sheet.has_numbers(place)
+    has_name = own.name in map(vocabulary.names.get, words) and sheet.has_numbers(place)
     return has_name and (not unit or is_unit(unit, own))
 
 
@@ -151,7 +157,8 @@ def _asked(
     why: str,
     sheet: Sheet,
     naming: Naming,
-    needs: Needs,
+    vocabulary: Vocabulary,
+    doubt: Doubt,
     given: Collection[str],
     doubtful: Collection[int] = (),
 ) -> Unreadable:
@@ -166,12 +173,12 @@ def _asked(
     said, words = [*sheet.columns], [UNREAD] * len(sheet.columns)
     with suppress(Unreadable):
         said = naming.of(sheet.columns)
-    read, headings, repeated = [*words], list[Heading](), needs.vocabulary.repeated
-    meant = [meaning_of(text, needs.vocabulary) for text in said]
+    read, headings, repeated = [*words], list[Heading](), vocabulary.repeated
+    meant = [meaning_of(text, vocabulary) for text in said]
     for i in (i for i, own in enumerate(meant) if own):  # what cannot be read beside those before it is open
         read[i] = said[i]
         try:
-            headings = read_headings(sheet.columns, needs.vocabulary, read)
+            headings = read_headings(sheet.columns, vocabulary, read)
         except Unreadable:
             read[i], words[i] = UNREAD, OPEN
     for own in headings:
@@ -181,7 +188,7 @@ def _asked(
         words[own.place] = OPEN if own.name in given else word
         if own.u:
             words[own.u.place] = _word(own.u, own.name, f"{own.number}_err")
-    missing = needs.missing({*given, *(own.name for own in meant if own)})
+    missing = _missing({*given, *(own.name for own in meant if own)}, vocabulary)
     left = [i for i, word in enumerate(words) if word == UNREAD and sheet.has_numbers(i)]
     left = [i for i in left if i or not sheet.numbers]
     units = _guesses(sheet, left, missing)
@@ -192,7 +199,7 @@ def _asked(
     for i in left:
         fits = [x for x in missing if i in units[x]]
         is_merged = missing and repeated and not sheet.columns[i].strip()
-        may_matter = is_merged or i in doubtful or (said[i] != UNREAD and needs.doubt(sheet, i, ()))
+        may_matter = is_merged or i in doubtful or (said[i] != UNREAD and doubt(sheet, i, ()))
         if len(fits) == 1:
             unit, is_sure = units[fits[0]][i], len(units[fits[0]]) == 1 and not may_matter
             words[i] = _short(fits[0]) + (f":{unit}" if unit else "") + ("" if is_sure else OPEN)
