@@ -187,7 +187,8 @@ def _asked(
         word += OPEN if unit or own.place in doubtful else ""
         words[own.place] = OPEN if own.name in given else word
         if own.u:
-            words[own.u.place] = _word(own.u, own.name, f"{own.number}_err")
+            word = _word(own.u, own.name, f"{own.number}_err")
+            words[own.u.place] = OPEN if own.name in given else word
     missing = _missing({*given, *(own.name for own in meant if own)}, vocabulary)
     left = [i for i, word in enumerate(words) if word == UNREAD and sheet.has_numbers(i)]
     left = [i for i in left if i or not sheet.numbers]
@@ -200,8 +201,9 @@ def _asked(
         fits = [x for x in missing if i in units[x]]
         is_merged = missing and repeated and not sheet.columns[i].strip()
         may_matter = is_merged or i in doubtful or (said[i] != UNREAD and doubt(sheet, i, ()))
-        if len(fits) == 1:
-            unit, is_sure = units[fits[0]][i], len(units[fits[0]]) == 1 and not may_matter
+        is_single = len(fits) == 1 and len(units[fits[0]]) == 1
+        if is_single or (len(fits) == 1 and fits[0] in repeated):
+            unit, is_sure = units[fits[0]][i], is_single and not may_matter
             words[i] = _short(fits[0]) + (f":{unit}" if unit else "") + ("" if is_sure else OPEN)
         elif fits or is_unclear or may_matter:
             words[i] = OPEN
@@ -223,7 +225,9 @@ def _guesses(sheet: Sheet, left: Sequence[int], missing: Sequence[str]) -> dict[
     counts = Counter(stems[i] for i in left)
     alike = [i for i in left if counts[stems[i]] > 1 and re.search(r"[^\W\d_]", stems[i])]
     if "time" in missing and not units["time"] and not units["a"]:
-        units["time"] = {i: "" for i in alike if not any(i in places for places in units.values())}
+        others = {i for places in units.values() for i in places}
+        others |= {i for i in alike if unit_within(sheet.columns[i], Heading(0, "", "time"))}
+        units["time"] = {i: "" for i in alike if i not in others}
     masses = [i for i in alike if i in units.get("m1", {}) and i in units.get("m2", {})]
     if len(masses) == 2:
         units |= {mass: {i: units[mass][i]} for mass, i in zip(MASSES, masses, strict=True)}
