@@ -246,9 +246,8 @@ def solve(m1: Mass = None, m2: Mass = None, *, digits: Any = None, **given: Unpa
         TypeError: There is no such input.
     """
     for name in given.keys() - Inputs.__annotations__.keys():
-        meant = input_meant(name)
-        is_found = "; a motion finds it, by find='drive'" if meant == DRIVE else f"; did you mean {meant}?"
-        hint = is_found if meant else nearest(name, Inputs.__annotations__)
+        meant = input_meant(name).replace(DRIVE, "find='drive'")
+        hint = f"; did you mean {meant}?" if meant else nearest(name, Inputs.__annotations__)
         raise TypeError(f"solve() got an unexpected keyword argument {name!r}{hint}")
     inputs: dict[str, Any] = {"m1": m1, "m2": m2, **given}
     return Solution(read_answers(inputs, read_digits(digits)))

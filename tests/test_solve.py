@@ -129,5 +129,5 @@ def test_solve_takes_no_other_inputs() -> None:
     unknown: Any = {"m1": 1, "m2": 3, "m3": 2}
     with pytest.raises(TypeError, match="unexpected keyword argument 'm3'"):
         solve(**unknown)
-    with pytest.raises(TypeError, match=r"'drive'; a motion finds it, by find='drive'$"):
+    with pytest.raises(TypeError, match=r"'drive'; did you mean find='drive'\?$"):
         solve(**{"m1": 1, "m2": 3, "drive": 5})

@@ -249,13 +249,11 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     """Return the form of a file, as asked for or by its suffix. Raises SceneError if the two disagree."""
     if asked:
         forms = {FORMS[asked].suffix: asked}
-    elif options.get("explain"):
-        forms = {".txt": ""}
     else:
-        forms = {".txt": "", **{FORMS[form].suffix: form for form in FORMS if form in options}}
-    suffix = os.path.splitext(file)[1].lower()
+        known = [x for x in FORMS if x in options and (FORMS[x].is_page or not options.get("explain"))]
+        forms = {".txt": "", **{FORMS[form].suffix: form for form in known}}
+    suffix, way = os.path.splitext(file)[1].lower(), ""
     if suffix and suffix not in forms:
-        way = "; add --markdown for .md" if options.get("explain") and ".txt" in forms else ""
         if suffix in PANDOC and "markdown" in options:
             import shlex
 
