@@ -29,7 +29,7 @@ NamedColumns = Mapping[str, Any]
 MOST_SCENES, SEED = 100_000, 1
 EXACT_DIGITS = 240
 PRECISE = Context(prec=EXACT_DIGITS + 20)
-REPEATS, CALLS = 5, 3
+REPEATS = 9
 FEWEST_ROWS, MOST_ROWS, RUN_SECONDS = 40, 10_000, 0.1
 """The rows of a table that is timed; between these, as many as are solved in such a time."""
 
@@ -163,31 +163,21 @@ class Measured(NamedTuple):
 
 def measure(family: str, scenes: Sequence[Inputs]) -> list[Measured]:
     """Measure every setting on these scenes, which have the same inputs; ``family`` names them."""
-    columns = _columns(scenes, len(scenes))
+    columns, measured = _columns(scenes, len(scenes)), list[Measured]()
     exact = in_digits(EXACT_DIGITS, **columns)
-    found, rows, timers = [], [], []
-    for run in SETTINGS.values():
+    for name, run in SETTINGS.items():
         run(**columns)  # compiles what is kept
         start = perf_counter()
         solved = run(**columns)
         rows_in_time = RUN_SECONDS * len(scenes) / max(perf_counter() - start, 1e-9)
-        found.append(errors(solved, exact))
-        rows.append(int(min(max(rows_in_time, FEWEST_ROWS), MOST_ROWS)))
-        timers.append(Timer(partial(run, **_columns(scenes, rows[-1])), timer=perf_counter))
-    # The runs take turns, so that whatever slows the machine for a while slows all of them. The first of the
-    # calls fills the processor's cache.
-    turns = [[min(timer.repeat(CALLS, 1)) for timer in timers] for _ in range(REPEATS)]
-    return [
-        Measured(
-            family,
-            name,
-            median(times) / size,
-            median(ulps) if ulps else None,
-            max(ulps, default=None),
-            1 - len(ulps) / len(scenes),
-        )
-        for name, times, size, ulps in zip(SETTINGS, zip(*turns, strict=True), rows, found, strict=True)
-    ]
+        ulps = errors(solved, exact)
+        rows = int(min(max(rows_in_time, FEWEST_ROWS), MOST_ROWS))
+        # The least time counts: whatever else the machine does makes others longer.
+        seconds = min(Timer(partial(run, **_columns(scenes, rows)), timer=perf_counter).repeat(REPEATS, 1))
+        typical, worst = median(ulps) if ulps else None, max(ulps, default=None)
+        wrong = 1 - len(ulps) / len(scenes)
+        measured.append(Measured(family, name, seconds / rows, typical, worst, wrong))
+    return measured
 
 
 def _columns(scenes: Sequence[Inputs], rows: int) -> NamedColumns:
