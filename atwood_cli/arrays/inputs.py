@@ -35,6 +35,8 @@ Numbers = ArrayLike | Sequence[str | float | Decimal | Fraction | None]
 DISK = INERTIA_FACTORS["disk"]
 IF_ABSENT = {name: Fraction(default) for name, default in {**DEFAULTS, "inertia": DISK}.items()}
 """The exact values of inputs that always have one, in SI units and degrees."""
+ABSENT = {name: read_exactly(name, None) for name in COLUMNS}
+"""Inputs as they are read in rows in which they are not given."""
 WHERE_ABSENT = {**{name: float(default) for name, default in IF_ABSENT.items()}, "axle": 0.0}
 """The doubles in columns of inputs for rows in which they are not given; for other inputs it is NaN."""
 NEARLY_EQUAL = 1e-14
@@ -254,8 +256,8 @@ def _fault(given: Mapping[str, GivenColumn], row: int, terms: Mapping[str, Terms
     if any(map(isnan, numbers.values())):
         return "NaN"
     try:
-        read = {name: read_exactly(name, numbers.get(name)) for name in COLUMNS}
-        Scene.of({name: one._replace(unit=Unit(terms=terms.get(name))) for name, one in read.items()})
+        read = ((name, read_exactly(name, number)) for name, number in numbers.items())
+        Scene.of(ABSENT | {name: one._replace(unit=Unit(terms=terms.get(name))) for name, one in read})
     except SceneError as error:
         return error.fault
     return "valid"
