@@ -414,7 +414,7 @@ class Machine(Generic[N]):
     @lazy
     def critical_pulley_mass(self) -> N:
         """Pulley mass (kg) above which the string slips; also if the pulley given is locked."""
-        friction_mass, decided, _ = self.friction_mass, self.decided, self.decided.heavier_side
+        decided, _ = self.decided, (self.decided.heavier_side, self.mu)  # raise if one is not given
         if decided.is_driven:
             raise Undetermined(quantities.ANY_DRIVEN)
         if not decided.can_slip:
@@ -422,7 +422,7 @@ class Machine(Generic[N]):
         if decided.always_slips:
             raise Undetermined(quantities.ALWAYS_SLIPS)
         beta = self._given(self.decided.beta, quantities.UNKNOWN_SHAPE)
-        return physics.critical_pulley_mass(self.l, self.h, friction_mass, self.drive, beta, self.b)
+        return physics.critical_pulley_mass(self.l, self.h, self.friction_mass, self.drive, beta, self.b)
 
     @lazy
     def critical_heavier_mass(self) -> N:
