@@ -10,12 +10,10 @@ import json
 import re
 import sys
 import warnings
-from collections.abc import Callable
 from contextlib import chdir
 from datetime import timedelta
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 from unicodedata import category
 from unittest.mock import patch
 
@@ -30,7 +28,6 @@ from .tools.running import called
 
 BUSY = timedelta(minutes=1)  # for any run, on a busy machine
 MOST_SAID = 2000  # characters of a sentence
-MARK = "\ufeff"
 
 
 # What is typed
@@ -95,29 +92,19 @@ def test_a_deep_or_huge_value_is_an_error_of_its_row(kind: str, name: str) -> No
 
 
 RUNS = {"solve": 400, "contact": 160, "sweep": 200, "batch": 280, "fit": 280, "tradeoff": 20}
-PROMISES: dict[str, tuple[Any, Callable[[Any], None], int]] = {
-    **{command: (fuzz.runs(command), check_run, count) for command, count in RUNS.items()}
-}
-"""What is drawn, what is promised of it, and how many are tried with --every-digit; otherwise a quarter."""
+"""How many of each command are tried with --every-digit; otherwise a quarter."""
 
 
-def try_many(kind: str, count: int) -> None:
-    drawn, promise, _ = PROMISES[kind]
-
-    @settings(max_examples=count, deadline=BUSY)
-    @given(drawn)
-    def is_kept(example: object) -> None:
-        promise(example)
-
-    is_kept()
+def try_many(command: str, count: int) -> None:
+    settings(max_examples=count, deadline=BUSY)(given(fuzz.runs(command))(check_run))()
 
 
-@pytest.mark.parametrize("kind", PROMISES)
-def test_nothing_that_is_typed_or_read_breaks_a_promise(kind: str) -> None:
-    try_many(kind, many(PROMISES[kind][2]))
+@pytest.mark.parametrize("command", RUNS)
+def test_nothing_that_is_typed_or_read_breaks_a_promise(command: str) -> None:
+    try_many(command, many(RUNS[command]))
 
 
 if __name__ == "__main__":
     settings.load_profile("every-digit")
-    for kind in PROMISES:
-        try_many(kind, int(sys.argv[1]))
+    for command in RUNS:
+        try_many(command, int(sys.argv[1]))

@@ -204,7 +204,7 @@ def test_curves_are_those_of_the_table_with_a_step_where_the_string_is_stuck(wor
         edge = axes.transData.inverted().transform([(band.x0, 0), (band.x1, 0)])[:, 0]
         assert 180 * (scene["m1"] == "3") in edge.round(9)
     assert (axes.get_ylim()[0] == 0) == (s.acceleration > 0)
-    assert axes.get_xticks().tolist() == [0, 30, 60, 90, 120, 150, 180]
+    assert (axes.get_xlim(), axes.get_xticks().tolist()) == ((0, 180), [0, 30, 60, 90, 120, 150, 180])
 
 
 # Sweeps
