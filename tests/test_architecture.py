@@ -1,11 +1,13 @@
-"""The folders are the architecture: which may import which, without a circle, and no module unseen."""
+"""The folders are the architecture: which may import which, without a circle; and each error is expected by a test."""
 
 import ast
 import re
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
+from importlib import import_module
 from pathlib import Path
 
+from .tools.regenerate import CASES
 from .tools.running import TOP
 
 PATHS = {
@@ -119,3 +121,39 @@ def test_one_scene_is_solved_by_what_the_map_says_to_read() -> None:
             names = {node.id for node in nodes if isinstance(node, ast.Name)}
             names |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
             assert not names & {"re", "sys", "json", "print", "open", "numpy"}, module
+
+
+# Every error text is a test: what the package can say is looked up in what the tests expect
+
+SENTENCES = "SceneError Malformed Rule Unreadable OSError FileExistsError ArithmeticError ask".split()
+
+
+def fragments(node: ast.AST) -> list[str]:
+    """The constant texts within an expression."""
+    values = (part.value for part in ast.walk(node) if isinstance(part, ast.Constant))
+    return [value for value in values if isinstance(value, str)]
+
+
+def errors() -> Iterator[tuple[str, str]]:
+    """Where an error is made, and the longest text in it that does not depend on what was given."""
+    for module, path in PATHS.items():
+        calls = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in (node for node in calls if isinstance(node, ast.Call) and node.args):
+            if (kind := getattr(node.func, "id", "")) in SENTENCES:
+                rule = node.args[min(2, len(node.args) - 1)] if kind in ("SceneError", "Rule") else node
+                texts = fragments(rule)
+                if isinstance(rule, ast.Name):
+                    texts = [str(getattr(import_module(module), rule.id, ""))]
+                if text := max(texts, key=len, default="").strip(" ;:,."):
+                    yield f"{module}: {node.lineno}", text
+
+
+def test_every_error_text_is_expected_by_a_test() -> None:
+    sources = (ast.parse(path.read_text(encoding="utf-8")) for path in (TOP / "tests").glob("test_*.py"))
+    expected = [text for source in sources for text in fragments(source)]
+    expected += [page.read_text(encoding="utf-8") for page in CASES]
+    made = list(errors())
+    assert len(made) > 60
+    # Nothing that could be wrong is given to tradeoff.
+    assert {place(where) for where, _ in made} >= {*MAY_IMPORT} - {"", "api", "__main__", "tradeoff"}
+    assert [one for one in made if not any(one[1] in text for text in expected)] == [], "is tried by no test"
