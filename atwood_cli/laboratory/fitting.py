@@ -24,7 +24,7 @@ from .diagnosis import (
 )
 from .estimate import Conditions, Fitted, best_fit, data_of, estimate, moves, rough_fit, separates
 from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, as_determined, equation, in_python
-from .runs import OUT_OF_RANGE, REACHES_0, Runs, Selection, behind_an_error, in_range
+from .runs import OUT_OF_RANGE, Runs, Selection, behind_an_error, in_range
 from .statistics import CannotSeparate
 
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
@@ -40,6 +40,8 @@ def conditions_of(inputs: Mapping[str, Input], option: Callable[..., str] = in_p
     for x, typed in inputs.items():
         if typed.given is not None and not in_range(typed):
             raise SceneError(x, typed.given, OUT_OF_RANGE)
+        if not parameter_of(x).may_be_zero and 0 < (typed.number or 0) <= typed.uncertainty:
+            raise SceneError(x, typed.given, "has an uncertainty that reaches 0")
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     return Conditions(inputs, Scene.of({**inputs, **masses}), option)
 
@@ -143,7 +145,7 @@ def _with_results(runs: Runs, used: Selection, shared: Conditions, names: Sequen
 
 
 def _at_ends(fit: Fitted) -> Iterator[list[dict[str, float]]]:
-    """Yield results with each uncertain input of all runs at both ends. Raises SceneError, CannotSeparate."""
+    """Yield results with each uncertain input of all runs at both ends. Raises CannotSeparate."""
 
     def at(runs: Runs, shared: Conditions) -> dict[str, float]:
         data = data_of(runs, fit.used)._replace(varying=fit.data.varying)
@@ -153,8 +155,6 @@ def _at_ends(fit: Fitted) -> Iterator[list[dict[str, float]]]:
     for x, typed in shared.inputs.items():
         if u := typed.uncertainty:
             size = shared.scene.as_given(x)
-            if not parameter_of(x).may_be_zero and u >= size:
-                raise SceneError(x, typed.given, REACHES_0)
             scenes = [shared.scene.with_number(x, end) for end in (size - u, size + u)]
             yield [at(runs, shared._replace(scene=scene)) for scene in scenes]
     for name, spread in runs.common.items():

@@ -44,7 +44,6 @@ CART = 5
 """The ratio of m1 to each m2 above which m1 may be a cart, or a cylinder that is turned."""
 ZERO = re.compile(r"[+-]?0+([.,]0*)?( ?[^\W\d_]+)?|")
 MEASURABLE = 1e-30, 1e30
-REACHES_0 = "has an uncertainty that reaches 0"
 BY_CHANCE = 1e-3
 """The probability below which numbers that are the means of others are taken to be computed."""
 OF_RUNS = (*MASSES, "drop")
@@ -128,8 +127,6 @@ def read_runs(
     by = {x: given[x].number for x in ("R", "g") if x in given and not given[x].uncertainty}
     shared = {x: _in_own_terms(x, given[x], by) for x in (*MASSES, "hanger", "drop") if x in given}
     common = {x: float(read.uncertainty) for x, read in shared.items() if read.uncertainty and x != "drop"}
-    if wide := [x for x in common if shared[x].uncertainty >= shared[x].number]:
-        raise SceneError(wide[0], given[wide[0]].given, REACHES_0)
     hanger = shared.pop("hanger", Input(Fraction(0)))
     others = [f"{named(sheet.columns[0], 0)} as the numbers of rows"] if columns.has_numbers else []
     if hanger.given is not None:
