@@ -23,6 +23,7 @@ from ..numbers.digits import (
 )
 from ..reading.units import MAX_MAGNITUDE
 from ..solver.answers import ABOVE_DOUBLES, BELOW_DOUBLES, Answers
+from ..solver.physics import acceleration, drive, load
 from ..solver.quantities import FROM_MOTION, LIMITS_OF_ONE_MASS, NAMES, QUANTITIES
 from ..solver.scene import DRIVE, IN_SI, INPUTS, MASSES, Unit, with_unit
 from .given import as_given, inputs_in_words, label
@@ -340,8 +341,10 @@ def _on_what_is_found(answers: Answers) -> Iterator[str]:
         yield f"`{finds}` is for a massless pulley, as `M` is not given; 0 is an end fixed to the pulley."
     if finds == "axle" and decided.motion.a is None:
         yield "The masses are taken to speed up from rest; if they come to rest, give an `a` below 0."
-    if decided.motion.fall and not finds and decided.has_axle_friction and not decided.axle_holds:
-        yield "The fall is from rest; while the mass still rises, axle friction adds to its weight."
+    falls = decided.motion.fall and not (finds or decided.lacking) and decided.has_axle_friction
+    if falls and decided.regime == "no-slip" and decided.rim_mass is not None and answers["acceleration"]:
+        rising = answers.settle(lambda m: acceleration(drive(m.l, m.h, -m.b), load(m.l, m.h, m.c), m.g))
+        yield f"The fall is from rest; while the mass still rises, `a` is {format_number(rising)} m/s²."
     if finds == "axle" and decided.motion.a == 0:
         yield "As the masses rest, `axle` is the least friction that holds them; it may be more."
     if finds == "g" and not LOW_GRAVITY < scene.g < HIGH_GRAVITY:
@@ -391,7 +394,8 @@ def _on_weights(answers: Answers) -> Iterator[str]:
     if either_way and motion.a is None:
         name = "speed" if motion.drop is None else "drop"
         way = "upwards, as" if getattr(motion, name) < 0 else "downwards, unless"
-        yield f"`m2` is taken to accelerate {way} `{name}` is below 0."
+        slower = " What rises ever slower accelerates downwards." if motion.finds == DRIVE else ""
+        yield f"`m2` is taken to accelerate {way} `{name}` is below 0.{slower}"
 
 
 def _on_pulley(answers: Answers, mass: Fraction | float) -> Answers:

@@ -1,13 +1,14 @@
 """A solved scene, and the forces along its arc, as tables and JSON show them."""
 
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from decimal import Decimal
 from itertools import groupby
 from typing import TYPE_CHECKING
 
 from ..explain.given import VERSION, inputs_with_effect, scene_record, terms_record
-from ..explain.messages import measured_quantities, notes, reasons, remarks, unmarked, verdict
+from ..explain.messages import measured_quantities, notes, reasons, reasons_in, remarks, unmarked, verdict
 from ..numbers.digits import rounding_to_place, rounding_to_uncertainty, strip_zeros, with_uncertainty
 from ..solver.answers import Answers
 from ..solver.quantities import LIMITS_OF_ONE_MASS, MEASURED_NAMES, QUANTITIES, cited
@@ -62,7 +63,8 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
     With ``values``, uncertain ones are said with their uncertainties.
     """
-    sentences = [f"{name}: {why}." for name, why in answers.decided.assumptions.items() if name in names]
+    assumed = Counter((name, why) for name, why in answers.decided.assumptions.items() if name in names)
+    sentences = reasons_in(assumed, 1)
     sentences += [quantity_in_words(answers, name) for name in names if values and answers.uncertainty(name)]
     sentences += [f"{name} is in {answers.unit_of(name)}." for name in answers.units]
     sentences += map(unmarked, remarks(answers.to_six_digits))

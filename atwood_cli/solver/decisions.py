@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 
 ZERO, ONE = Fraction(0), Fraction(1)
 REGIME_ASSUMED = "assumed, as mu is not given"
+GIVEN_BACK = ("mu_verge", "safety_factor", "least_wrap")
+"""What on the verge is mu, 1 and the wrap."""
 CRITICAL_ASSUMED = "on the critical pulley, as M is not given; M = inf is a locked pulley"
 MASSLESS_ASSUMED = "0, as M is not given and a massless pulley needs no friction; M = inf is a locked pulley"
 LimitingCase = Literal["as_given", "locked", "massless", "heaviest", "heaviest_at_rest", "lightest_at_rest"]
@@ -220,11 +222,7 @@ class Decisions:
         """The quantities that depend on what is only assumed, and the assumption."""
         if self.scene.mu is not None:
             on_verge = not self.lacking and self.regime == "verge" and self.scene.mu
-            return (
-                dict.fromkeys(("mu_verge", "safety_factor", "least_wrap"), CRITICAL_ASSUMED)
-                if on_verge
-                else {}
-            )
+            return dict.fromkeys(GIVEN_BACK, CRITICAL_ASSUMED) if on_verge else {}
         is_massless = self.scene.M is None and self.pulley_mass == 0
         moves = self.heavier_side != 0 and self.tensions_equal and not self.one_mass_is_0
         regime = {"regime": REGIME_ASSUMED} if self.mu_assumed else {}
