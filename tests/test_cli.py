@@ -18,7 +18,7 @@ import pytest
 
 from atwood_cli import cli, solve
 from atwood_cli.__main__ import main
-from atwood_cli.reading.names import ASCII, read_names
+from atwood_cli.reading.names import SPELLED, read_names
 from atwood_cli.solver.quantities import QUANTITIES
 
 from .tools.running import LOADED, PAPER, TOP, Atwood, called, process
@@ -72,7 +72,7 @@ def test_a_printed_solution_fits_the_terminal_and_has_no_colours(monkeypatch: py
 
 def test_every_symbol_names_its_quantity() -> None:
     for name, about in QUANTITIES.items():
-        plain = about.symbol.translate(ASCII)
+        plain = "".join(SPELLED.get(sign, sign) for sign in about.symbol)
         ways = [about.symbol, plain, *(plain.replace(" ", blank) for blank in ("_", "")), name]
         assert {*read_names("only", [*ways, name.replace("_", "-")], QUANTITIES)} == {name}
 

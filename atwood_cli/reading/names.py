@@ -8,19 +8,14 @@ from ..solver.quantities import MEASURED_NAMES, QUANTITIES, STANDARD, TABLE_NAME
 from ..solver.scene import DRIVE, FINDABLE, INPUTS, MEASURED, SceneError, Unit
 from .units import Malformed, read_unit_of_result
 
-SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
-ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
-"""The letters to type for those of symbols."""
-PLAIN = ASCII | {ord("\N{MICRO SIGN}"): "mu"} | dict.fromkeys(map(ord, " _-"))
-
-
-def _plain(symbol: str) -> str:
-    """Return a symbol or a name without blanks and dashes, so that Fmin and F_min are the same as F min."""
-    return symbol.translate(PLAIN)
+SPELLED = dict(zip("μµφβταωχ₁₂²", "mu mu phi beta tau alpha omega chi 1 2 2".split(), strict=True))
+"""What to type for characters of symbols."""
+PLAIN = str.maketrans(SPELLED | dict.fromkeys(" _-", ""))
+"""Makes a symbol or a name plain, so that Fmin and F_min are the same as F min."""
 
 
 NAMES_BY_SYMBOL = {
-    _plain(typed): name for name, about in QUANTITIES.items() for typed in (name, about.symbol)
+    typed.translate(PLAIN): name for name, about in QUANTITIES.items() for typed in (name, about.symbol)
 }
 
 MEANT = {
@@ -110,15 +105,15 @@ def read_name(
     """Read one of the names ``known``, or its symbol as tables show it. Raises SceneError."""
     if word in known:
         return word
-    if (name := symbols.get(_plain(word), "")) in known:
+    if (name := symbols.get(word.translate(PLAIN), "")) in known:
         return name
-    small = _plain(word).lower()
+    small = word.translate(PLAIN).lower()
     alike = [x for symbol, x in symbols.items() if len(small) > 1 and symbol.lower() == small and x in known]
     meant = MEANT.get(small, alike[0] if len(alike) == 1 else "")
     hint = f"; did you mean {meant}?" if meant in known else ""
     known_names = "; see atwood quantities" if kind == "quantity" else f"; there are {', '.join(known)}"
     a_kind = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
-    result = NAMES_BY_SYMBOL.get(_plain(word)) or MEANT.get(small)
+    result = NAMES_BY_SYMBOL.get(word.translate(PLAIN)) or MEANT.get(small)
     if known is FINDABLE and result in TABLE_NAMES:
         hint = f"; leave find out: {result} is a result (--only {result})"
     if kind == "quantity" and " in " in word:
