@@ -299,6 +299,7 @@ ASKED = [
     ("fit --drop 1m", "Massen in g;;t in s;\nlinks;rechts;1;2\n150;165;1,9;2\n160;180;1,5;1,6\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,t:s,?"),
     ("fit --m1 0 --m2 9g --drop 1m", "Gesamt, gr;Dauer\n150;3\n160;2\n", "t (or a) is missing", "?,?"),
     ("fit --m1 0", "drop (m);m2 = 0,03 kg;m2 = 0,05 kg\n0,4;1,2;0,9\n0,6;1,5;1,1\n", "m2, t (or a) are missing", "drop:m,?,?"),
+    ("fit", "m1 (g),m2 (g),pos,lap,calc,calc\n150,165,0.7,1.9,0.39,9.7\n", "t (or a), drop are missing", "m1:g,m2:g,?,?,?,?"),
     ("fit --drop 0.7", "Scheibe;61 g;\nLi (g);Re (g);t (s)\n150;165;1,9\n150;175;1,4\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,t:s"),
     ("fit --m1 0 --m2 9g --drop 1 --columns '?'", "no.\tt (s)\tt ideal (s)\n1\t4\n2\t3\n", "its columns are to be decided", "-,t:s"),
     ("batch", "m1,m2,Kąt [°]\n1,3,270\n", "'Kąt [°]' (wrap?) is not read, and may matter", "m1,m2,?"),

@@ -222,7 +222,7 @@ def _guesses(sheet: Sheet, left: Sequence[int], missing: Sequence[str]) -> dict[
     if units.get("time") and units.get("a"):  # one may be computed from the other
         units["a" if units.get("drop", " ") else "time"] = {}
     stems = [re.sub(r"\d", "", normalize("NFKC", column)) for column in sheet.columns]
-    counts = Counter(stems[i] for i in left)
+    counts = Counter({sheet.columns[i]: stems[i] for i in left}.values())  # a heading twice is no repeat
     alike = [i for i in left if counts[stems[i]] > 1 and re.search(r"[^\W\d_]", stems[i])]
     if "time" in missing and not units["time"] and not units["a"]:
         others = {i for places in units.values() for i in places}
