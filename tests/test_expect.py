@@ -40,6 +40,15 @@ def test_it_is_decided_exactly(m1: int, m2: int, M: int, off: int, digits: int) 
     assert failure(answers, read_condition(f"M* >= {above}")).startswith("expected M* >= ")
 
 
+def test_a_value_with_the_sign_of_the_motion_says_so() -> None:
+    """Where the masses are exchanged, its sign changes; that of a component of friction is another matter."""
+    there, here = (read_answers({"m1": m, "m2": 4 - m, "M": 99, "mu": "0.3", "R": 1}, None) for m in (1, 3))
+    for name in QUANTITIES.keys() - {"friction_force_x"}:
+        if there[name] and here[name]:
+            said = failure(here, read_condition(f"{name} == {there[name]}"))
+            assert said.endswith("; it is positive when m2 descends") == (here[name] == -there[name]), name
+
+
 def test_a_quantity_whose_unit_nobody_reads_is_compared_with_plain_numbers(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
