@@ -458,7 +458,7 @@ def test_a_word_that_differs_between_repeats_is_doubted() -> None:
         ("m1,m2,t:s", "--columns does not fit: column 't.ms' has the unit 'ms', not 's'"),
         ("m1,m2,t,t,t", "--columns 'm1,m2,t,t,t' are 5 words, and the table has 4 columns"),
         ("m1,m2,x", "--columns 'x' is no word for a column: m1, m2, drop, a, time, M, g, inertia, I, R, axle, or - for one that is not read"),
-        ("m1,m2,t:g", "--columns 't:g' has the unit 'g', of another quantity"),
+        ("m1,m2,t:g", "--columns does not fit: column 't.ms' has the unit 'ms', not 'g'"),
         ("m1,m2,t --column t=F", "--columns 'm1,m2,t' says what each column is; leave --column out"),
     ],
 )  # fmt: skip

@@ -148,24 +148,14 @@ def read_runs(
     heights = {read[:2] for row in used for own, read in row.cells.values() if own.name == "drop"}
     if len(heights) == 1:  # if it is wrong, it is so in all runs alike
         same["drop"] = shared["drop"] = Input(*heights.pop())
-    runs = defaultdict[tuple[tuple[str, Number], ...], list[Row]](list)
-    for row in used:
-        given_by = {own.name: read[:2] for own, read in row.cells.values() if own.name in OF_RUNS}
-        given_by |= {x: (read.number, Fraction(0)) for x, read in shared.items()}
-        given_by |= {x: (given_by[x][0] + hanger.number, given_by[x][1]) for x in MASSES}
-        runs[tuple(given_by.items())].append(row)
-    if not runs:
+    if not (runs := _runs_of(used, shared, hanger)):
         raise Unreadable(f"it has no runs{behind_an_error([*remarks, *unused])}")
     _check_uncertainties(rows, left_out)
-    if left_out:
-        remarks.append(f"left out, as asked: {', '.join(map(in_words, left_out))}.")
+    remarks += [f"left out, as asked: {', '.join(map(in_words, left_out))}."] if left_out else []
     result = _as_columns(columns, runs, left_out)
     in_units = {own.name for own in columns.headings if own.unit or own.place in columns.with_units}
-    cells = [cell for row in used for cell in row.cells.values() if cell[1].number and not cell[0].unit]
-    kinds = {(own.name, not has_unit(read.given)) for own, read in cells}
-    bare = sorted(x for x, is_bare in kinds if is_bare and (x, False) in kinds)
     doubts = [*_doubts(result, {**given, **same}, in_units), *_words_apart(sheet, columns, runs)]
-    doubts += [BARE.format(x, parameter_of(x).unit) for x in bare]
+    doubts += _bare_beside_units(used)
     return result._replace(remarks=remarks, unused=unused, doubts=doubts, common=common, same=same)
 
 
@@ -217,6 +207,24 @@ def _words_apart(sheet: Sheet, columns: Columns, runs: RowsOfRuns) -> list[str]:
             what = f"{named(sheet.columns[i], i)} differs between rows that are taken as repeats"
             apart.append(f"{what}: is it another pulley or another load?")
     return apart
+
+
+def _runs_of(rows: Iterable[Row], shared: Mapping[str, Input], hanger: Input) -> RowsOfRuns:
+    """Return runs: rows that differ only in what was measured."""
+    runs = defaultdict[tuple[tuple[str, Number], ...], list[Row]](list)
+    for row in rows:
+        given_by = {own.name: read[:2] for own, read in row.cells.values() if own.name in OF_RUNS}
+        given_by |= {x: (read.number, Fraction(0)) for x, read in shared.items()}
+        given_by |= {x: (given_by[x][0] + hanger.number, given_by[x][1]) for x in MASSES}
+        runs[tuple(given_by.items())].append(row)
+    return runs
+
+
+def _bare_beside_units(rows: Sequence[Row]) -> list[str]:
+    """Say which quantities have cells without a unit beside some with one, under a heading without one."""
+    cells = [cell for row in rows for cell in row.cells.values() if cell[1].number and not cell[0].unit]
+    in_units, bare = ({own.name for own, x in cells if has_unit(x.given) is which} for which in (True, False))
+    return [BARE.format(x, parameter_of(x).unit) for x in sorted(in_units & bare)]
 
 
 def _means_among_repeats(runs: Runs) -> list[str]:

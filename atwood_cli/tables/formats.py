@@ -42,7 +42,6 @@ _AS_TEXT = re.compile(
 """The formats that show a text as it is: without a section for texts, or with one that adds nothing."""
 _CONDITION = re.compile(r"\[[<>=]")
 _SHOWN = re.compile(r"([+-]?)([0-9.,'’\s]*[0-9])[.,]?(?:[eE]([+-]?[0-9]{1,2}))?(?![0-9])(.*)", re.DOTALL)
-_BUT_DIGITS = {mark: re.compile(f"[^0-9{mark}]") for mark in ".,"}
 _COUNT = r"([0-9]+(?:\.[0-9]*)?)"
 _DURATION = re.compile(rf"(-?)P(?:{_COUNT}D)?(?:T(?:{_COUNT}H)?(?:{_COUNT}M)?(?:{_COUNT}S)?)?")
 
@@ -116,7 +115,7 @@ def agreed(value: str, shown: str, in_percent: bool) -> str:
         return shown
     sign, digits, power, unit = match.groups(default="")
     for mark in ".," if is_shown_unit(unit) else "":
-        whole, *decimals = _BUT_DIGITS[mark].sub("", digits).split(mark)
+        whole, *decimals = re.sub(f"[^0-9{mark}]", "", digits).split(mark)
         shown_value = float(f"{sign}{whole}.{''.join(decimals)}e{power or 0}")
         step = 10.0 ** (int(power or 0) - sum(map(len, decimals)))
         if not decimals[1:] and abs(number - shown_value) <= step * HALF:

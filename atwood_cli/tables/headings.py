@@ -195,8 +195,6 @@ def read_naming(
         if i not in meanings and word != UNREAD:
             rule = f"is no word for a column: {names}, or {UNREAD} for one that is not read"
             raise SceneError("columns", by_place[i], rule)
-        if i in meanings and (unit := meanings[i].unit) and not is_unit(unit, meanings[i]):
-            raise SceneError("columns", by_place[i], f"has the unit {in_quotes(unit)}, of another quantity")
     twice = {word for i, word in enumerate(read) if i in meanings and read.count(word) > 1}
     for i, own in meanings.items():  # t,t_err,t,t_err: each of the one before
         if own.uncertain and read[i] in twice:

@@ -72,14 +72,9 @@ class NotUnderstood(Unreadable):
         lines = ["".join(f"  {set_cell_size(*x)}" for x in zip(row, sizes, strict=True)) for row in rows]
         options = "".join(f" --{name} '{OPEN}'" for name in self.options)
         typed = f"{re.sub(A_NAMING, '', shlex.join(command))} --columns {shlex.quote(self.typed)}{options}"
-        has_guess = any(word.endswith(OPEN) and word != OPEN for word in self.words)
-        guess = (
-            [f"  A word before {OPEN} is a guess: take the {OPEN} away if it is right."] if has_guess else []
-        )
-        other = "other " if has_guess else ""
-        hint = f"Replace each {other}{OPEN}, and type ({UNREAD} leaves a column unread):"
+        hint = f"Replace each {OPEN} ({UNREAD} is not read), or delete it behind a right guess, and type:"
         hint = hint if OPEN in self.typed + options else "If this is right, type:"
-        return ["", *map(str.rstrip, lines), "", *guess, f"  {hint}", "", f"  {typed}"]
+        return ["", *map(str.rstrip, lines), "", f"  {hint}", "", f"  {typed}"]
 
 
 def understood(
@@ -170,26 +165,12 @@ def _asked(
     why = "; ".join([why, *sheet.remarks])
     if not sheet.rows:  # as of frames and NDJSON, whose columns have names
         return Unreadable(f"{why}; there are {listed(sheet.columns)}")
-    said, words = [*sheet.columns], [UNREAD] * len(sheet.columns)
+    said = [*sheet.columns]
     with suppress(Unreadable):
         said = naming.of(sheet.columns)
-    read, headings, repeated = [*words], list[Heading](), vocabulary.repeated
-    meant = [meaning_of(text, vocabulary) for text in said]
-    for i in (i for i, own in enumerate(meant) if own):  # what cannot be read beside those before it is open
-        read[i] = said[i]
-        try:
-            headings = read_headings(sheet.columns, vocabulary, read)
-        except Unreadable:
-            read[i], words[i] = UNREAD, OPEN
-    for own in headings:
-        unit = _unit_above(sheet, own)
-        word = _word(own._replace(unit=own.unit or unit), own.name, own.number)
-        word += OPEN if unit or own.place in doubtful else ""
-        words[own.place] = OPEN if own.name in given else word
-        if own.u:
-            word = _word(own.u, own.name, f"{own.number}_err")
-            words[own.u.place] = OPEN if own.name in given else word
-    missing = _missing({*given, *(own.name for own in meant if own)}, vocabulary)
+    words = _words_known(sheet, said, vocabulary, given, doubtful)
+    names = {own.name for text in said if (own := meaning_of(text, vocabulary))}
+    missing, repeated = _missing({*given, *names}, vocabulary), vocabulary.repeated
     left = [i for i, word in enumerate(words) if word == UNREAD and sheet.has_numbers(i)]
     left = [i for i in left if i or not sheet.numbers]
     units = _guesses(sheet, left, missing)
@@ -201,10 +182,10 @@ def _asked(
         fits = [x for x in missing if i in units[x]]
         is_merged = missing and repeated and not sheet.columns[i].strip()
         may_matter = is_merged or i in doubtful or (said[i] != UNREAD and doubt(sheet, i, ()))
-        is_single = len(fits) == 1 and len(units[fits[0]]) == 1
-        if is_single or (len(fits) == 1 and fits[0] in repeated):
-            unit, is_sure = units[fits[0]][i], is_single and not may_matter
-            words[i] = _short(fits[0]) + (f":{unit}" if unit else "") + ("" if is_sure else OPEN)
+        rivals = len(units[fits[0]]) if len(fits) == 1 else 0
+        if rivals == 1 or (rivals and fits[0] in repeated):
+            word = _word(Heading(i, "", fits[0], unit=units[fits[0]][i]))
+            words[i] = word + (OPEN if rivals > 1 or may_matter else "")
         elif fits or is_unclear or may_matter:
             words[i] = OPEN
     is_by_blanks = len(words) == 1 and any(SEVERAL.search(row[0]) for row in sheet.rows)
@@ -214,6 +195,34 @@ def _asked(
         return Unreadable(f"{why}; {NO_SUCH_NUMBERS}")
     is_open = OPEN in [words[i] for i in left] and [*missing] != ["drop"]
     return NotUnderstood(why, sheet, words, [] if is_open else [x for x in lacking if x not in repeated])
+
+
+def _words_known(
+    sheet: Sheet,
+    said: Sequence[str],
+    vocabulary: Vocabulary,
+    given: Collection[str],
+    doubtful: Collection[int],
+) -> list[str]:
+    """Return the words of columns that are known by what is ``said`` of them, UNREAD for all others.
+
+    What cannot be read beside those before it, or is given for all rows, too, is open.
+    """
+    words, read, headings = [UNREAD] * len(said), [UNREAD] * len(said), list[Heading]()
+    for i in (i for i, text in enumerate(said) if meaning_of(text, vocabulary)):
+        read[i] = said[i]
+        try:
+            headings = read_headings(sheet.columns, vocabulary, read)
+        except Unreadable:
+            read[i], words[i] = UNREAD, OPEN
+    for own in headings:
+        unit = _unit_above(sheet, own)
+        word = _word(own._replace(unit=own.unit or unit)) + (OPEN if unit or own.place in doubtful else "")
+        words[own.place] = OPEN if own.name in given else word
+        if own.u:
+            word = _word(own.u._replace(name=own.name, number=f"{own.number}_err"))
+            words[own.u.place] = OPEN if own.name in given else word
+    return words
 
 
 def _guesses(sheet: Sheet, left: Sequence[int], missing: Sequence[str]) -> dict[str, dict[int, str]]:
@@ -247,10 +256,7 @@ def _unit_among(texts: Iterable[str], meaning: Heading) -> str:
     return next((symbol_of(text) for text in texts if text != other and is_unit(text, meaning)), "")
 
 
-def _word(own: Heading, name: str, end: str) -> str:
+def _word(own: Heading) -> str:
     """Return the word for a column: t1:ms, m1_err."""
-    return f"{_short(name)}{end}" + (f":{symbol_of(own.unit) or own.unit}" if own.unit else "")
-
-
-def _short(name: str) -> str:
-    return "t" if name == "time" else name
+    name, unit = "t" if own.name == "time" else own.name, symbol_of(own.unit) or own.unit
+    return f"{name}{own.number}" + (f":{unit}" if unit else "")

@@ -9,6 +9,7 @@ import csv
 import re
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass, field
 from functools import lru_cache
 from io import BytesIO, StringIO
 from itertools import chain
@@ -31,20 +32,14 @@ _ESCAPED = re.compile("_x(000[9AaDd]|00[2-7][0-9A-Fa-f])_")
 """A tab, a line break, or a sign of ASCII in the texts of .xlsx."""
 
 
+@dataclass
 class Grid:
-    """The texts of a sheet by row and column, and what is merged or hidden.
+    """The texts of a sheet by row and column, what is merged, with its first and last cell, and hidden."""
 
-    A merged cell has its first row and column, and its last.
-    """
-
-    def __init__(self) -> None:
-        self.rows: dict[int, dict[int, str]] = {}
-        self.merged: list[tuple[int, int, int, int]] = []
-        self.hidden_rows, self.hidden_columns = set[int](), set[int]()
-
-
-Book = tuple[dict[str, bool], str, Grid]
-"""Whether a sheet is hidden, by its name; the name of the sheet that is read, and what it holds."""
+    rows: dict[int, dict[int, str]] = field(default_factory=dict)
+    merged: list[tuple[int, int, int, int]] = field(default_factory=list)
+    hidden_rows: set[int] = field(default_factory=set)
+    hidden_columns: set[int] = field(default_factory=set)
 
 
 def opened_table(source: str, sheet: str | None, stack: ExitStack) -> tuple[IO[bytes], list[str]]:
@@ -127,8 +122,8 @@ def _chosen(hidden: Mapping[str, bool], wanted: str | None) -> str:
 # .xlsx
 
 
-def _xlsx(package: Package, wanted: str | None) -> Book:
-    """Read the names of the sheets, and the cells of one."""
+def _xlsx(package: Package, wanted: str | None) -> tuple[dict[str, bool], str, Grid]:
+    """Return whether each sheet is hidden, by its name, the name of that which is read, and its cells."""
     book = dict(package.links("").values()).get("officeDocument", "xl/workbook.xml")
     links, hidden, paths = package.links(book), dict[str, bool](), dict[str, str]()
     for _, name, sheet, _ in package.elements(book):
@@ -253,8 +248,8 @@ def _shown_in_xlsx(
 # .ods
 
 
-def _ods(package: Package, wanted: str | None) -> Book:
-    """Read the names of the sheets and, in one go, the cells of one."""
+def _ods(package: Package, wanted: str | None) -> tuple[dict[str, bool], str, Grid]:
+    """Return what `_xlsx` does, of a part that has all sheets."""
     hidden, styles, is_hidden = dict[str, bool](), set[str](), False
     shown, kept, grid, row, column, columns = "", Grid(), Grid(), 0, 0, 0
     paragraphs, cells = list[str](), dict[int, str]()
