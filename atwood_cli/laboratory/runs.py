@@ -43,12 +43,12 @@ LARGE = {
 CART = 5
 """The ratio of m1 to each m2 above which m1 may be a cart, or a cylinder that is turned."""
 ZERO = re.compile(r"[+-]?0+([.,]0*)?( ?[^\W\d_]+)?|")
-MEASURABLE = 1e-30, 1e30
+MEASURABLE = Fraction("1e-30"), Fraction("1e30")
 BY_CHANCE = 1e-3
 """The probability below which numbers that are the means of others are taken to be computed."""
 OF_RUNS = (*MASSES, "drop")
 """What a run gives; rows with the same numbers are one run."""
-OUT_OF_RANGE = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
+OUT_OF_RANGE = "is beyond what a fit computes with, 1e-30 to 1e+30"
 
 
 class Runs(NamedTuple):
