@@ -23,8 +23,6 @@ SINGULAR_RATIO = 1e-7
 """Below this ratio of singular values a linear fit has no unique solution."""
 MOST_OUTLIERS = 20
 """Outliers that are looked for; there is at most one for three degrees of freedom."""
-MORE_DOF = 3
-"""Degrees of freedom that a known variance adds to those of runs, where they are judged. From simulations."""
 LEAST_SHARE = 1e-4
 """The variance of a residual is at least this share of the variance of its value."""
 
@@ -148,7 +146,7 @@ def distances_from(line: Line, kept: Selection) -> tuple[Column, Any]:
     """Judge the values of a line by a line of those ``kept``.
 
     The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite, but
-    few runs may agree by chance, and hide the scatter between runs: at most ``MORE_DOF`` above their own.
+    few runs may agree by chance, and hide the scatter between runs: at most twice their own and 2.
     """
     J, y, known, scale = line[:4]
     others = line.part(kept)
@@ -158,7 +156,7 @@ def distances_from(line: Line, kept: Selection) -> tuple[Column, Any]:
     spread = np.maximum(own + np.where(kept, -1, 1) * of_line, LEAST_SHARE * own)
     share = between / own
     dof = 1 / (share**2 / others.dof + (1 - share) ** 2 / line.known_dof)
-    return (y - J @ others.coefficients) / np.sqrt(spread), np.minimum(dof, others.dof + MORE_DOF)
+    return (y - J @ others.coefficients) / np.sqrt(spread), np.minimum(dof, 2 * others.dof + 2)
 
 
 def judge_of_repeats(values: Column, u: Column, run: Places, step: float) -> Judge:
