@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .solver.scene import Scene as Scene
     from .solver.scene import SceneError as SceneError
 
-__version__ = "1.2.0rc1"
+__version__ = "1.2.0"
 
 _HOMES = {
     **dict.fromkeys(("Solution", "solve"), "api"),
