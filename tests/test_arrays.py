@@ -8,7 +8,7 @@ from datetime import date
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
-from math import inf, isfinite, isnan, nan
+from math import inf, isfinite, isnan, nan, ulp
 from random import Random
 from threading import Barrier
 from time import sleep
@@ -326,6 +326,16 @@ def test_rows_of_the_next_level_together_or_one_by_one(few: int, monkeypatch: py
     results = solve_arrays(**given)
     for name in exact:
         np.testing.assert_allclose(results[name], exact[name], 2e-14, 0)
+
+
+def test_a_weight_that_is_a_tie_is_settled_in_columns(monkeypatch: pytest.MonkeyPatch) -> None:
+    """3 g has 55 bits: half-way between two doubles, for a quarter of the values of g."""
+    given: dict[str, Any] = {"m1": 3.0, "M": np.inf, "g": 9.80665 + 2.0**-49 * np.arange(100)}
+    monkeypatch.setattr(arrays.rows.Rows, "_solve_one_by_one", Mock(side_effect=AssertionError))
+    (tension, _) = solve_arrays(m2=4.0, **given, accuracy="exact", quantities=["tension_1"]).values()
+    exact = [3 * Fraction(float(g)) for g in given["g"]]
+    assert tension.tolist() == [float(e) for e in exact]
+    assert sum(abs(Fraction(float(e)) - e) == Fraction(ulp(float(e))) / 2 for e in exact) > 20
 
 
 def test_threads_do_not_wait_for_each_others_attributes() -> None:

@@ -20,7 +20,7 @@ from atwood_cli.solver.scene import BODIES
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS
 from atwood_cli.tradeoff.tradeoff_page import COLUMNS, LEGEND
 
-from .tools.regenerate import KEPT, SCRIPTS, essence
+from .tools.regenerate import KEPT, SCRIPTS, answered, denied, essence
 from .tools.running import TOP, labels, process
 
 PAGES = {
@@ -48,8 +48,20 @@ def test_what_is_kept_is_what_is_printed_today(file: Path, pytestconfig: pytest.
     tried = [kept for kept in KEPT if kept.file == file and kept.needs not in lacking]
     for kept in tried:
         assert essence(kept.today()) == essence(kept.text), "after a look: python -m tests.tools.regenerate"
+        assert not [*denied(kept.text)]
     if not tried:
         pytest.skip(f"needs {' '.join(lacking)}, or no --quick")
+
+
+def test_a_value_that_the_oracle_denies_is_not_written() -> None:
+    """A wrong value of a fall passed once it was accepted."""
+    assert [*denied("$ atwood solve --m1 1 --m2 3\nnote: torque = 1 N m.\n")]  # it has none without R
+    for words in ("", " --json", " --only T1,fall_time", " --markdown | grep T", " --digits 3"):
+        right = answered(f"$ atwood solve --m1 1 --m2=3 --M 10 --drop 2{words}")
+        assert "11.9" in right or "12.0" in right
+        assert not [*denied(right)]
+        assert len([*denied(re.sub("11.9|12.0", "11.8", right))]) == 1
+        assert len([*denied(right.replace("1.35", "1.36"))]) == ("grep" not in words)
 
 
 @pytest.mark.parametrize("name", PYTHON)

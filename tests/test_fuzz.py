@@ -12,8 +12,10 @@ import sys
 import warnings
 from contextlib import chdir
 from datetime import timedelta
+from itertools import product
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import process_time
 from unicodedata import category
 from unittest.mock import patch
 
@@ -62,7 +64,35 @@ def check_run(run: fuzz.Run) -> None:
         json.loads(ran.out, parse_constant=lambda word: 1 / 0)
 
 
-# Values of tables that are deep or huge
+# Long texts, and values of tables that are deep or huge
+
+LONG = 10_000
+TYPED = [
+    *(f"solve --m1 1 --m2 3 --{option} LONG" for option in ("M", "wrap", "axle", "g", "expect", "only")),
+    *("sweep --m1 1 --m2 3 --M LONG", "batch - --column LONG", "fit - --without LONG", "solve LONG"),
+]
+CELLS = ["m1,m2\nLONG,3\n", "m1,LONG\n1,3\n", 'm1,m2,n\n1,3,"LONG\n', "LONG"]
+HELD = [
+    *product(["batch -", "fit -"], CELLS),
+    *product(["batch - --from ndjson"], ['{"m1":"LONG","m2":3}\n', "LONG"]),
+]
+
+
+@pytest.mark.parametrize("unit", ["9", " ", "(", "1/", "1(2)", "1,", "a_", "pi", '"', "kg*", "m1 in "])
+def test_a_long_text_takes_no_long_time(unit: str) -> None:
+    """Eleven kinds, wherever a pattern meets what is typed or what a file holds. --expect took 16 s for 2,000 blanks."""
+    text = (unit * LONG)[:LONG]
+    runs = [
+        ([long if word == "LONG" else word for word in line.split()], b"")
+        for line in TYPED
+        for long in (text, f"1{text}x")
+    ]
+    runs += [(command.split(), content.replace("LONG", text).encode()) for command, content in HELD]
+    for words, stdin in runs:
+        begun = process_time()
+        called(words, stdin)
+        assert process_time() - begun < 1, words  # 10,000 characters took some patterns minutes
+
 
 SIZE = 600_000  # a record has less than 1 MB
 ODD: dict[str, dict[str, str]] = {

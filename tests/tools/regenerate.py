@@ -1,22 +1,31 @@
 """The outputs that are kept in files, and what prints each: python -m tests.tools.regenerate brings them up to date.
 
+It stops if a value of one scene is not the oracle's.
 `python -m tests.tools.regenerate measured` measures the table and the picture of `examples/tradeoff.md` anew, in minutes.
 """
 
 import re
 import shlex
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, chdir
+from decimal import Decimal
 from functools import partial
 from importlib.util import find_spec
+from itertools import chain, pairwise, takewhile
 from pathlib import Path
 from shutil import which
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from atwood_cli.cli import COMMANDS
+from atwood_cli.cli.solve import implied
+from atwood_cli.reading.names import read_names
+from atwood_cli.reading.scenes import read_answers
+from atwood_cli.solver.quantities import QUANTITIES
+from atwood_cli.solver.scene import INPUTS, MEASURED, SceneError
 
+from . import oracle
 from .running import TOP, called, labels, pages_seen, process, words_on
 
 EXAMPLES = TOP / "examples"
@@ -142,6 +151,35 @@ def essence(text: str) -> object:
     return text.replace("argument(s)", "arguments")  # as typer words it, by its version
 
 
+def denied(text: str) -> Iterator[str]:
+    """Values that transcripts of `atwood solve` print of a scene, and the oracle denies, also where none exists."""
+    for line, out in re.findall(r"^\$ atwood solve (.*)\n((?:(?!\$ ).*\n)*)", text, re.MULTILINE):
+        words = takewhile("|".__ne__, shlex.split(line))
+        parts = [word.split("=", 1) if word.startswith("--") else [word] for word in words]
+        options = [*pairwise(chain.from_iterable(parts))]
+        inputs = {x: dict(options).get(f"--{x.replace('_', '-')}") for x in (*INPUTS, *MEASURED, "find")}
+        try:
+            only = read_names("only", [names for option, names in options if option == "--only"], QUANTITIES)
+            inputs["find"] = inputs["find"] or implied({*only}, inputs)
+            truth = oracle.expected(read_answers(inputs, None).decided.scene)
+        except SceneError:  # as the transcript says
+            continue
+        out += "".join(f'  "{name}": {bare}\n' for name, bare in zip(only, out.splitlines(), strict=False))
+        for name in (name for name in QUANTITIES if name not in oracle.BOUNDS and not inputs.get(name)):
+            number, unit = r"(-?\d+(?:[.]\d+)?(?:e[-+]?\d+)?)(?:\s±\s\S+)?", QUANTITIES[name].unit
+            in_table = rf"[│|] {name}\b[^│|]*[│|] +{number} *[│|] {unit} *[│|]"
+            said = rf'^  "{name}": {number},?$|\b{name}\s=\s{number}\s{unit}(?!\w)'
+            for numbers in re.findall(f"{in_table}|{said}", out, re.MULTILINE):
+                number = "".join(numbers)
+                if truth[name] is None:
+                    yield f"{name} has no value, and not {number}: {line}"
+                    continue
+                digits = len(Decimal(number).as_tuple().digits)
+                rounded = [oracle.correctly_rounded(truth[name], n) for n in (None, digits)]
+                if float(number) != rounded[0] and Decimal(number) != rounded[1]:
+                    yield f"{name} is {rounded[0]} and not {number}: {line}"
+
+
 def measure() -> None:
     """Write what `atwood tradeoff` measures on this machine into its page and its picture."""
     page = EXAMPLES / "tradeoff.md"
@@ -151,8 +189,11 @@ def measure() -> None:
 
 
 def regenerate() -> None:
-    """Write what has changed, which is then to be looked at."""
-    for kept, fresh in [(kept, kept.today()) for kept in KEPT if not kept.lacks]:
+    """Write what has changed, which is then to be looked at. Exits if the oracle denies a value."""
+    today = [(kept, kept.today()) for kept in KEPT if not kept.lacks]
+    if wrong := [words for _, fresh in today for words in denied(fresh)]:
+        sys.exit("\n".join([*wrong, "Mend the program, or the oracle."]))
+    for kept, fresh in today:
         if essence(fresh) == essence(kept.text):
             continue
         page = kept.file.read_text(encoding="utf-8") if kept.file.exists() else ""
