@@ -72,7 +72,7 @@ class NotUnderstood(Unreadable):
         lines = ["".join(f"  {set_cell_size(*x)}" for x in zip(row, sizes, strict=True)) for row in rows]
         options = "".join(f" --{name} '{OPEN}'" for name in self.options)
         typed = f"{re.sub(A_NAMING, '', shlex.join(command))} --columns {shlex.quote(self.typed)}{options}"
-        hint = f"Replace each {OPEN} ({UNREAD} is not read), or delete it behind a right guess, and type:"
+        hint = f"Replace each {OPEN} ({UNREAD} is not read), or take it away from a right guess, and type:"
         hint = hint if OPEN in self.typed + options else "If this is right, type:"
         return ["", *map(str.rstrip, lines), "", f"  {hint}", "", f"  {typed}"]
 
