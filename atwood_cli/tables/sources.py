@@ -173,6 +173,6 @@ def _in_utf8(first: bytes, blocks: Iterator[bytes], remarks: list[str]) -> Itera
     try:
         for block in chain([first], blocks, [b""]):
             if text := decoder.decode(block, final=not block):
-                yield re.sub("\r(?!\n)", "\n", text).encode()
+                yield (re.sub("\r(?!\n)", "\n", text) if "\r" in text else text).encode()
     except UnicodeDecodeError:
         raise Unreadable(f"it is not {encoding}, though it begins so; save it as UTF-8") from None
