@@ -321,7 +321,7 @@ def rendered(value: Decimal, code: str) -> str:
 
 
 LITERALS = st.sampled_from(
-    ['" g"', '"kg"', r"\k\g", r"\ \k", '"g"', "_)", "* ", "[$ N]", "[$-409]", " ", '"0"', '"1"', "(", ")", "-", "+", r"\-", '"e3"', '"%"', "%", '"/2"', "±", "°"]
+    ['" g"', '"kg"', r"\k\g", r"\ \k", '"g"', "_)", "* ", "[$ N]", "[$-409]", " ", '"0"', '"1"', "(", ")", "-", "+", r"\-", '"e3"', '"%"', "%", '"/2"', "±", "°", r"\;", "_;", '";"', "[$;]", '\\"']
 )  # fmt: skip
 DIGITS = st.sampled_from("0 0.0 0.00 # #.## #,##0 #,##0.0 0, 0.0, 0,, 0,.0 .00 ?.?? 00 0.0#".split())
 SECTION = st.builds(
@@ -361,6 +361,12 @@ def test_no_number_but_the_shown_one(code: str, number: Decimal) -> None:
 def test_common_formats_are_understood() -> None:
     codes = ["0.0", "#,##0.00", '0.0" g"', "0%", "0.00E+00", "[Red]0.0", "0.0_)", "0.0;-0.0", "General", "@"]
     assert [code for code in codes if "shown as" in shown_number("2.5", code)] == []
+
+
+@pytest.mark.parametrize("code", [r'0\;-0" kg"', "0_;-0", '0";";0', "0[$;];0", "[<0]-0"])
+def test_a_semicolon_or_a_condition_divides_no_section_by_halves(code: str) -> None:
+    """Of the first, -5 was -5 kg, though it has one section."""
+    assert shown_number("-5", code) == f"-5 shown as {code}"
 
 
 # Sheets and packages

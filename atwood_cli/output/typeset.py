@@ -139,10 +139,8 @@ def print_explanation(page: Page, given: Iterable[str], explanation: Explanation
         for _, sentences, equations in paragraphs:
             page.say(*map(in_words, sentences))
             for equation in equations:
-                if page.is_markdown:
-                    label = (
-                        rf" \qquad {equation.label}" if equation.label else ""
-                    )  # not every reader knows \tag
+                if page.is_markdown:  # not every reader knows \tag
+                    label = rf" \qquad {equation.label}" if equation.label else ""
                     page.say(f"$$\n{_aligned(equation)}{label}\n$$")
                     continue
                 for line in _equation_lines(equation, page.width, f"  {equation.label:<{label_width}} "):

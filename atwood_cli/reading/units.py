@@ -79,6 +79,8 @@ MULTIPLES = {
     "acceleration": (_MULTIPLE % "g", Fraction(STANDARD_GRAVITY), "m/s2"),
 }
 """The pattern of multiples of a constant, as 3pi/2, and its value in a unit, by dimension."""
+SUM = r"(?<=[^eE ]) ?\+ ?"
+"""What stands between numbers that are added."""
 SHARE = rf"({_DECIMAL} ?{_UNIT}) ?/ ?({_DECIMAL})"
 """A number with a unit, divided, as a diameter of 12cm/2."""
 STOPWATCH = r"(?:(\d+):(?=[0-5]\d:))?(\d+):([0-5]\d(?:\.\d*)?)"
@@ -199,7 +201,7 @@ def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> 
     if dimension == "time" and (clock := re.fullmatch(STOPWATCH, text, re.ASCII)):
         hours, minutes, seconds = map(_decimal, clock.groups(default="0"))
         return Input(limited((hours * 60 + minutes) * 60 + seconds), unit=Unit("s"))
-    if "+" in text and len(summands := re.split(r"(?<=[^eE ]) ?\+ ?", text)) > 1:
+    if "+" in text and len(summands := re.split(SUM, text)) > 1:
         terms = [_read_exactly(one, dimension, others) for one in summands]
         own = [
             (x.unit.symbol == "rad", bool(x.unit.symbol or dimension == "angle"), x.unit.terms) for x in terms

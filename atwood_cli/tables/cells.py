@@ -7,7 +7,7 @@ from typing import Any
 
 from ..numbers.text import in_quotes
 from ..reading.inputs import read_input
-from ..reading.units import PERCENT
+from ..reading.units import PERCENT, SUM
 from ..solver.scene import Input, SceneError
 from .headings import Heading
 
@@ -62,6 +62,9 @@ def read_cell(heading: Heading, row: Sequence[Any], comma: bool) -> Input | None
         read = read_input(heading.name, text)
     except SceneError as error:
         raise SceneError(heading.name, cell, error.rule) from None
+    if isinstance(text, str) and not read.uncertainty and re.search(SUM, text):
+        rule = "is a sum, which options alone may be; write one number, an uncertainty as 1.00±0.02"
+        raise SceneError(heading.name, cell, rule)
     if not has_unit(text):
         number, spread = (x * heading.read.size for x in (read.number, read.uncertainty))
         read = read._replace(number=number, uncertainty=spread, unit=heading.read)

@@ -40,7 +40,8 @@ _AS_TEXT = re.compile(
     rf"(?:[^;@]*;){{0,2}}[^;@]*|(?:.*;)?{_COLOUR}(?:{_PADDING})*@(?:{_PADDING})*", re.DOTALL
 )
 """The formats that show a text as it is: without a section for texts, or with one that adds nothing."""
-_CONDITION = re.compile(r"\[[<>=]")
+_NOT_DIVIDED = re.compile(r'\[(?:[<>=]|[^\]]*;)|[\\_*][";]')
+"""A condition on a section, a semicolon that ends none, or a quotation mark that quotes nothing."""
 _SHOWN = re.compile(r"([+-]?)([0-9.,'’\s]*[0-9])[.,]?(?:[eE]([+-]?[0-9]{1,2}))?(?![0-9])(.*)", re.DOTALL)
 _COUNT = r"([0-9]+(?:\.[0-9]*)?)"
 _DURATION = re.compile(rf"(-?)P(?:{_COUNT}D)?(?:T(?:{_COUNT}H)?(?:{_COUNT}M)?(?:{_COUNT}S)?)?")
@@ -51,12 +52,13 @@ def _rule_for(order: int, code: str) -> tuple[int, str, float] | None:
     """Return how a format shows numbers above 0 (1), 0, or below (-1): times a factor, with a unit.
 
     A clock shows them up to so many seconds. None if it is not wholly understood, or may show nothing.
-    A semicolon that is quoted leaves a section that is not understood.
+    No format with a semicolon that ends no section is understood.
     """
     sections = code.split(";")
     has_own = len(sections) > 1 and order < 0
     match = _SECTION.fullmatch(sections[1 if has_own else 2 if len(sections) > 2 and order == 0 else 0])
-    if not match or _CONDITION.search(code):
+    is_divided = not any(section.count('"') % 2 for section in sections)
+    if not (match and is_divided) or _NOT_DIVIDED.search(code):
         return None
     before, clock, number, literals, percent, after = match.groups(default="")
     unit = (_text_of(literals) + percent + _text_of(after)).rstrip()
