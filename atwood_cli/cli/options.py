@@ -29,7 +29,7 @@ DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
 REMARKS = {
-    "m1": ", 80g+5g, 20N",
+    "m1": ", 80g+4*5g, 20N",
     "M": "; inf locks it",
     "mu_k": "; mu if not given",
     "g": ", or a planet, moon or pluto; 9.80665 if not given",

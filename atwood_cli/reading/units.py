@@ -1,4 +1,4 @@
-"""Read numbers as people type them, exactly: 1.5e-3, 1½, 12cm/2, 80g+5g, 9.81 m/s2, 3pi/2, 1.000(2)."""
+"""Read numbers as people type them, exactly: 1.5e-3, 1½, 12cm/2, 80g+4*5g, 9.81 m/s2, 3pi/2, 1.000(2)."""
 
 from __future__ import annotations
 
@@ -81,11 +81,13 @@ MULTIPLES = {
 """The pattern of multiples of a constant, as 3pi/2, and its value in a unit, by dimension."""
 SUM = r"(?<=[^eE ]) ?\+ ?"
 """What stands between numbers that are added."""
+PRODUCT = r"(?<=[\w.]) ?\* ?(?=[\d.])"
+"""What stands between factors, of which one may have a unit: 4*50g."""
 SHARE = rf"({_DECIMAL} ?{_UNIT}) ?/ ?({_DECIMAL})"
 """A number with a unit, divided, as a diameter of 12cm/2."""
 STOPWATCH = r"(?:(\d+):(?=[0-5]\d:))?(\d+):([0-5]\d(?:\.\d*)?)"
 """A time in hours, minutes and seconds."""
-_ALIKE = str.maketrans("０１２３４５６７８９＋－．／（）％：−⁄", "0123456789+-./()%:-/")
+_ALIKE = str.maketrans("０１２３４５６７８９＋－．／（）％：−⁄×", "0123456789+-./()%:-/*")
 """Characters that mean those of ASCII. Superscripts do not, as 10² is not 102."""
 _MIXED = r"(?a)(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([½⅓⅔¼¾⅕-⅞])(?! ?[\d.eE/(])"
 """A vulgar fraction, perhaps behind a whole number."""
@@ -210,6 +212,12 @@ def _read_exactly(text: str, dimension: str | None, others: Sequence[Terms]) -> 
             raise Malformed("adds numbers of different units; write the same unit at each")
         total = limited(sum((x.number for x in terms), Fraction(0)))
         return terms[0]._replace(number=total, quotient="")
+    if "*" in text and len(factors := re.split(PRODUCT, text)) > 1:
+        *plain, last = sorted(factors, key=lambda one: not re.fullmatch(_QUOTIENT, one))
+        read = _read_exactly(last, dimension, others)._replace(quotient="")
+        for one in plain:
+            read = read._replace(number=limited(read.number * _read_exactly(one, None, ()).number))
+        return read
     if "/" in text and (share := re.fullmatch(SHARE, text, re.ASCII)):
         read = _read_exactly(share[1], dimension, others)
         return read._replace(number=limited(read.number * _quotient(f"1/{share[2]}")))
