@@ -105,6 +105,7 @@ class Solution(Generic[T]):
     axle_torque: T | None
     drive_force: T | None
     drive_torque: T | None
+    drive_power: T | None
     drop: T | None
     fall_time: T | None
     final_speed: T | None

@@ -25,7 +25,7 @@ VALUES = """
     acceleration tension_1 tension_2 tension_difference mu_verge safety_factor tension_ratio capstan_ratio friction_force
     friction_force_min friction_force_max friction_force_x friction_force_y axle_force torque rim_acceleration
     angular_acceleration critical_pulley_mass critical_heavier_mass critical_lighter_mass least_heavier_mass
-    least_pulley_mass least_wrap pulley_mass moment_of_inertia gravity m1 m2 mu_k axle axle_torque drive_force drive_torque drop fall_time final_speed
+    least_pulley_mass least_wrap pulley_mass moment_of_inertia gravity m1 m2 mu_k axle axle_torque drive_force drive_torque drive_power drop fall_time final_speed
     final_angular_speed kinetic_energy"""
 SCENE = "m1 m2 M mu mu_k g inertia I R wrap axle"
 FITTED = """rim_mass axle gravity delay pulley_mass moment_of_inertia uncertainty interval correlation chi2 dof

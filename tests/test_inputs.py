@@ -119,6 +119,7 @@ BY_DEFINITION = {
     "angle": "deg 1 ° 1 turn 360 turns 360 rad 1",
     "time": "s 1 ms 0.001 us 0.000001 min 60 h 3600",
     "force": "N 1 mN 0.001 daN 10 kN 1000 lbf 4.4482216152605 kip 4448.2216152605 kgf 9.80665 gf 0.00980665",
+    "power": "W 1 kW 1000",
     "energy": "J 1 mJ 0.001 kJ 1000 ft_lbf 1.3558179483314004",
     "torque": "N_m 1 mN_m 0.001 N_cm 0.01 daN_m 10 kN_m 1000 kgf_m 9.80665 lbf_ft 1.3558179483314004 ft_lbf 1.3558179483314004 lbf_in 0.1129848290276167",
     "acceleration": "m/s2 1 m_s-2 1 cm/s2 0.01 ft/s2 0.3048 N/kg 1",

@@ -20,7 +20,7 @@ from .tools import oracle
 from .tools.scenes import KINDS, inputs, table
 
 OF_MOTION = (
-    *("FINDS_ANOTHER", "NEEDS_MOTION", "NEEDS_FALL", "AT_REST", "SLOWS_DOWN"),
+    *("FINDS_ANOTHER", "NEEDS_MOTION", "NEEDS_SPEED", "NEEDS_FALL", "AT_REST", "SLOWS_DOWN"),
     *("WOULD_SLIP", "ANY_DRIVEN", "EITHER_WAY", "NEEDS_MASSES"),
 )
 """How reasons of quantities begin that a measurement gives: no scene lacks them."""

@@ -73,6 +73,7 @@ def laws(scene: Any) -> dict[str, bool]:
     if v is not None and driven and force is not None:
         drop = abs(value["drop"] or rational(scene.motion.drop))
         given = side(a) * ((m2 - m1) * g + force) * drop
+        kept["power of a drive"] = same(value["drive_power"], side(a) * force * v)
         kept["energy with a drive"] = same((m1 + m2 + c) * v**2 / 2, given - f * drop)
     if v is not None and regime == "no-slip" and not driven:
         drop, time, speed = (abs(value[x] or rational(getattr(scene.motion, y))) for y, x in FALL.items())

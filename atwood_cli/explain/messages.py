@@ -391,11 +391,16 @@ def _on_weights(answers: Answers) -> Iterator[str]:
             in_kg = format_number(strip_zeros(_beside(answers, None)(mass)))
             yield f"`{x}` is a weight of {as_given(answers, x)}, the mass {in_kg} kg."
     either_way = motion.finds == DRIVE or (motion.finds in MASSES and 0 not in (scene.m1, scene.m2))
-    if either_way and motion.a is None:
-        name = "speed" if motion.drop is None else "drop"
+    is_steady = motion.finds == DRIVE and motion.a == 0 and motion.way != 0
+    if either_way and (motion.a is None or is_steady):
+        name, verb = "speed" if motion.drop is None else "drop", "move" if is_steady else "accelerate"
         way = "upwards, as" if getattr(motion, name) < 0 else "downwards, unless"
-        slower = " What rises ever slower accelerates downwards." if motion.finds == DRIVE else ""
-        yield f"`m2` is taken to accelerate {way} `{name}` is below 0.{slower}"
+        slower = motion.finds == DRIVE and not is_steady
+        sentence = f"`m2` is taken to {verb} {way} `{name}` is below 0."
+        yield f"{sentence}{IF_SLOWER}" if slower else sentence
+
+
+IF_SLOWER = " What rises ever slower accelerates downwards, and has the `drive_power` with the other sign."
 
 
 def _on_pulley(answers: Answers, mass: Fraction | float) -> Answers:

@@ -35,6 +35,7 @@ UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
         "gf": Fraction(STANDARD_GRAVITY) / 1000,
     },
     "energy": {"J": "1", "mJ": "1e-3", "kJ": "1e3", "ft lbf": FOOT * POUND_FORCE},
+    "power": {"W": "1", "kW": "1e3"},
     "torque": {
         "N m": "1", "mN m": "1e-3", "N cm": "1e-2", "daN m": "10", "kN m": "1e3", "kgf m": STANDARD_GRAVITY,
         "lbf ft": POUND_FORCE * FOOT, "ft lbf": FOOT * POUND_FORCE, "lbf in": POUND_FORCE * INCH,
@@ -57,7 +58,7 @@ A unit may also have no blank, or a dot, a star, ^2 or ².
 """
 AMBIGUOUS = {
     **{"ton": "2000 lb, 2240 lb or 1000 kg", "tonf": "2000 lbf, 2240 lbf or 1000 kgf"},
-    "cwt": "100 lb, 112 lb or 50 kg",
+    **{"cwt": "100 lb, 112 lb or 50 kg", "hp": "745.7 W or 735.5 W"},
 }
 """Units that are not taken, and what they may be."""
 
@@ -105,7 +106,7 @@ WORDS_FOR_UNITS = {
     **{"in": "inch inches", "ft": "foot feet", "lb": "pound pounds lbm", "rad": "radian radians"},
     **{"lbf ft": "lbft", "ft lbf": "ftlb", "lbf in": "lbin inlb inlbf"},
     **{"mph": "mi/h", "knot": "knots kn kt", "rpm": "rev/min r/min"},
-    **{"ton": "ton tons", "tonf": "tonf tonsf", "cwt": "cwt"},
+    **{"ton": "ton tons", "tonf": "tonf tonsf", "cwt": "cwt", "hp": "hp"},
 }
 """Other words for units."""
 _SYMBOLS |= {word: symbol for symbol, words in WORDS_FOR_UNITS.items() for word in words.split()}

@@ -493,9 +493,10 @@ class Machine(Generic[N]):
     def drive_force(self) -> N:
         self.check_finds(DRIVE)
         self._check_grips()
-        if self.decided.has_axle_friction and not self.decided.measured_acceleration:
+        way = self.decided.motion.way
+        if self.decided.has_axle_friction and not way:
             raise Undetermined(quantities.EITHER_WAY)
-        return self.drive_force_against(1 if self.decided.motion.acceleration(1) > 0 else -1)
+        return self.drive_force_against(way)
 
     def drive_force_against(self, direction: int) -> N:
         """Return the drive (N) of a pulley that turns with m2 downwards (1) or upwards (-1); (3) with it."""
@@ -506,6 +507,15 @@ class Machine(Generic[N]):
     def drive_torque(self) -> N:
         torque: N = self.drive_force * self._given(self.scene.R, quantities.NEEDS_R)
         return torque
+
+    @property
+    def drive_power(self) -> N:
+        force, given = self.drive_force, self.decided.fall
+        if "speed" not in given and not (given and self.decided.measured_acceleration):
+            raise Undetermined(quantities.NEEDS_SPEED)
+        speed = self.ar.number(given["speed"]) if "speed" in given else self.final_speed
+        power: N = force * speed
+        return power if self.decided.motion.way >= 0 else power * -1
 
     @lazy
     def fall_time(self) -> N:

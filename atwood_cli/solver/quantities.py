@@ -80,6 +80,7 @@ QUANTITIES = {
     "axle_torque": About("measured", "τ axle", "N m", "", "the same as a torque", in_equations="τ_axle"),
     "drive_force": About("measured", "F drive", "N", "(3)", "force of a motor or brake at the rim, positive if it helps m2 down", None, "F_drive"),
     "drive_torque": About("measured", "τ drive", "N m", "", "the same as a torque", in_equations="τ_drive"),
+    "drive_power": About("measured", "P drive", "W", "", "power of the drive at the final speed; that of a brake is below 0", in_equations="P_drive"),
     "drop": About("measured", "s", "m", "", "height of the fall from rest"),
     "fall_time": About("measured", "t", "s", "", "time of that fall"),
     "final_speed": About("measured", "v", "m/s", "", "speed at its end"),
@@ -113,7 +114,7 @@ FROM_MOTION: dict[str | None, tuple[str, ...]] = {
     "m2": ("m2",),
     "mu_k": ("mu_k",),
     "axle": ("axle", "axle_torque"),
-    "drive": ("drive_force", "drive_torque"),
+    "drive": ("drive_force", "drive_torque", "drive_power"),
     "fall": ("drop", "fall_time", "final_speed", "final_angular_speed", "kinetic_energy"),
 }
 """The quantities that only a measurement gives: by the input that it finds, or of a fall."""
@@ -122,27 +123,14 @@ NAMES = ("regime", *(name for name in QUANTITIES if name not in MEASURED_NAMES))
 """The quantities that every scene has."""
 LIMITS_OF_ONE_MASS = ("critical_lighter_mass", "critical_heavier_mass")
 """The least and the greatest mass that the string holds beside a given one."""
-NEED_BOTH_MASSES = {*NAMES} - {
-    *LIMITS_OF_ONE_MASS,
-    "capstan_ratio",
-    "least_heavier_mass",
-    "least_pulley_mass",
-    "moment_of_inertia",
-}
+OF_ONE_MASS = "capstan_ratio least_heavier_mass least_pulley_mass moment_of_inertia".split()
+NEED_BOTH_MASSES = {*NAMES} - {*LIMITS_OF_ONE_MASS, *OF_ONE_MASS}
 """What no scene has that lacks a mass."""
 TABLE_NAMES = (*NAMES, *FROM_MOTION["fall"])
 """The quantities of many scenes: those of every scene, and of a fall."""
 UNITS = {"regime": ""} | {name: about.unit for name, about in QUANTITIES.items()}
 """All quantities with their units."""
-STANDARD = (
-    "regime",
-    "acceleration",
-    "tension_1",
-    "tension_2",
-    "mu_verge",
-    "friction_force",
-    "critical_pulley_mass",
-)
+STANDARD = (*"regime acceleration tension_1 tension_2 mu_verge friction_force critical_pulley_mass".split(),)
 """The quantities of many scenes in a table, unless others are named."""
 
 # Why a scene does not determine a quantity, and what to give.
@@ -187,5 +175,6 @@ EITHER_WAY = "not unique, as axle friction opposes the motion, which `a` = 0 doe
 NEEDS_FALL = (
     "`give` `drop`, the height that the heavier mass falls from rest, or `time` or `speed` of that fall"
 )
+NEEDS_SPEED = "`give` `speed`"
 AT_REST = "no value, as the acceleration is 0"
 SLOWS_DOWN = "no value, as the masses slow down and do not start from rest"

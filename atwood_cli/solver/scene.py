@@ -289,6 +289,12 @@ class Motion(NamedTuple):
         """What was measured of a fall, by name."""
         return tuple(name for name in FALL if getattr(self, name) is not None)
 
+    @property
+    def way(self) -> int:
+        """1 if a drive moves m2 downwards, -1 if upwards, 0 if unknown; from rest unless a = 0."""
+        moves = self.acceleration(1) or self.speed or self.drop or 0
+        return (moves > 0) - (moves < 0)
+
     def acceleration(self, sign: int) -> Fraction:
         """Return the measured acceleration (m/s²) of the heavier mass: m2 if its sign is 1, m1 if -1."""
         if self.a is not None:

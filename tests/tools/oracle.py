@@ -351,12 +351,15 @@ def expected(scene: Scene) -> dict[str, Any]:
         out[FOUND[finds]] = rational(getattr(scene, finds))
     if R is not None and finds == "axle":
         out["axle_torque"] = f * R
-    if driven and regime == "no-slip" and c is not None and (found_a or not f):
+    way = side(found_a or scene.motion.speed or scene.motion.drop or 0) if driven else 0
+    if driven and regime == "no-slip" and c is not None and (way or not f):
         t1, t2 = out["tension_1"], out["tension_2"]
-        out["drive_force"] = c * rational(found_a) + f * side(found_a) - (t2 - t1)  # (3)
+        out["drive_force"] = c * rational(found_a) + f * way - (t2 - t1)  # (3)
         out["drive_torque"] = None if R is None else out["drive_force"] * R
     fall: Any = (None if x is None else abs(rational(x)) for x in scene.motion[1:4])
     drop, time, speed = fall
+    if driven and out["drive_force"] is not None and speed is not None:
+        out["drive_power"] = out["drive_force"] * speed * way
     from_rest = finds != "axle" or s * found_a > 0
     if {drop, time, speed} != {None} and from_rest and state is not None and state[0] != 0:
         a = rational(abs(found_a)) if driven else state[0]
@@ -364,6 +367,8 @@ def expected(scene: Scene) -> dict[str, Any]:
         out["drop"] = None if drop is not None else combine(height, a)  # v² = 2 a s
         out["fall_time"] = time or combine(lambda a: root(2 * drop / a) if drop else speed / a, a)
         out["final_speed"] = speed or combine(lambda a: root(2 * drop * a) if drop else a * time, a)
+        if driven and out["drive_force"] is not None and speed is None:
+            out["drive_power"] = combine(lambda v: out["drive_force"] * v * way, out["final_speed"])
         rim, falls_by = out["rim_acceleration"], drop or out["drop"]
         if rim is not None:
             share = combine(lambda x, y: abs(x) / y, rim, a) if regime == "slip" else one
@@ -408,7 +413,7 @@ FOUND = {"M": "pulley_mass", "g": "gravity", "m1": "m1", "m2": "m2", "axle": "ax
 """The quantity that is an input, if a motion finds it."""
 MEASURED = [
     *FOUND.values(),
-    *"mu_k axle_torque drive_force drive_torque".split(),
+    *"mu_k axle_torque drive_force drive_torque drive_power".split(),
     *"drop fall_time final_speed final_angular_speed kinetic_energy".split(),
 ]
 """The quantities of measured motions."""

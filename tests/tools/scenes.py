@@ -93,6 +93,9 @@ held by a brake | m1=3 m2=1 M=10 mu=0.5 a=0 find=drive
 driven at equal tensions | m2=1 I=0.2 R=0.2 a=0 mu=0.5 find=drive
 a drum | m1=0 M=10 R=0.2 a=-1 find=drive
 driven from rest | M=10 R=0.2 drop=-2 time=3 find=drive
+a lift that rises steadily | M=10 axle=5 a=0 speed=-2 find=drive
+a lift that comes down steadily | m1=3 m2=1 M=10 axle=5 a=0 drop=2 find=drive
+a motor after a time | M=10 a=1 time=3 find=drive
 driven, of any pulley | m1=3 m2=1 mu=0.5 a=1 find=drive
 falls and turns | M=10 R=0.2 drop=2
 slips and turns | m1=3 m2=1 M=300 mu=0.1 R=0.2 drop=2
@@ -257,6 +260,8 @@ def driven(rng: Random, given: Given) -> Given:
     )
     fall = {"drop": a * time**2 / 2, "time": time, "speed": a * time}
     measured = {x: fall[x] for x in rng.sample(FALL, 2)} if a and rng.random() < 0.4 else {"a": a}
+    if "a" in measured and rng.random() < 0.4:
+        measured[rng.choice(FALL[:: 1 if a else 2])] = time if a else rng.choice([-1, 1]) * time
     return (
         given
         | {x: f"{value.numerator}/{value.denominator}" for x, value in measured.items()}
