@@ -28,7 +28,6 @@ from atwood_cli.solver.scene import INPUTS, Scene
 
 from .conftest import examples, many
 from .tools import oracle
-from .tools.running import called
 from .tools.scenes import FAMILIES, KINDS, inputs, read_scene, scenes, table
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
@@ -325,12 +324,6 @@ def check_handout(page: str) -> None:
     titles = re.findall("^#.*", page, re.MULTILINE)
     assert titles[0] == "# Atwood's machine, step by step"
     assert all(title.startswith(f"## {i}. ") for i, title in enumerate(titles[1:], 1))
-
-
-def test_a_file_has_the_form_that_its_name_tells(tmp_path: Path) -> None:
-    for name, start in {"a.md": "# Atwood's machine", "a.txt": "m1 = 1 kg"}.items():
-        assert called(["solve", *"--m1 1 --m2 3 --explain -o".split(), str(tmp_path / name)]).status == 0
-        assert (tmp_path / name).read_text(encoding="utf-8").startswith(start)
 
 
 def test_pandoc_makes_other_pages_of_a_handout_without_complaint(tmp_path: Path) -> None:

@@ -22,17 +22,13 @@ from atwood_cli import Fit, SceneError
 from atwood_cli import fit as laboratory_fit
 from atwood_cli.laboratory.columns import Kind
 from atwood_cli.laboratory.estimate import Data, Varying, data_of, estimate, expected
-from atwood_cli.laboratory.fitting import conditions_of, fitted
-from atwood_cli.laboratory.report import _correlation
 from atwood_cli.laboratory.results import USUAL
-from atwood_cli.laboratory.runs import Runs
 from atwood_cli.laboratory.statistics import (
     CannotSeparate,
     distances_from,
     fit_line,
     judge_of_repeats,
     outliers,
-    spread_of_columns,
     sum_of_squares,
 )
 
@@ -43,7 +39,6 @@ from .tools.simulated_laboratories import (
     CAUSES,
     CELLS,
     DELAYS,
-    NOTHING,
     OTHERS,
     SCATTER,
     Design,
@@ -52,7 +47,6 @@ from .tools.simulated_laboratories import (
     by_scipy,
     causes_named,
     counts,
-    drawn,
     outliers_beside_delay,
 )
 from .tools.simulated_laboratories import expected as textbook
@@ -92,12 +86,6 @@ def single(kind: Kind, l: Any, h: Any, drop: Any, measured: Any) -> Data:
 
 
 # Data made from the model
-
-
-def made(kind: Kind, seed: int, repeats: int = 1, **more: Any) -> Runs:
-    """Runs of a pulley and an axle that are known, with normal errors."""
-    design = Design(8, repeats, 0.02 if kind == "time" else 0.005, "vary", kind, **more)
-    return drawn(design, np.random.default_rng(seed)).runs()
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
@@ -157,12 +145,6 @@ def test_the_likelier_scatter_between_runs_counts() -> None:
         assert np.mean([one.accused for one in cells]) < 12, of  # 20 where few runs agree by chance
 
 
-def test_what_is_stated_counts() -> None:
-    few, many_times = (made("time", 3, stated=times) for times in (2.0, 20.0))
-    u, larger = (fitted(runs, conditions_of(NOTHING), USUAL).results["axle"][1] for runs in (few, many_times))
-    assert larger / u == pytest.approx(10, rel=1e-3)
-
-
 def test_an_outlier_beside_a_delay_is_named_with_its_true_distance() -> None:
     """46 and 33 standard deviations were said of residuals of 3.0 and 0.26; true outliers were not named."""
     for case, least in ((0, 0.8), (1, 0.8), (2, 0.5)):
@@ -178,15 +160,6 @@ def test_the_cause_is_what_repairs_it(wrong: str) -> None:
         is_said, is_right, _ = causes_named(wrong, 25, sums)
         assert is_right >= bar - 60 * sqrt(bar / 100 * (1.02 - bar / 100))
         assert bar or is_said <= 8
-
-
-def test_the_scatter_of_times_is_found_beside_uncertain_masses() -> None:
-    """It was taken to be 0, and the same stopwatch had an uncertainty of 0.028 s and of 0.006 s."""
-    runs = made("time", 4)
-    uncertain = runs._replace(u={**runs.u, "m1": 0 * runs.u["m1"] + 1e-4})
-    whole = fitted(uncertain, conditions_of(NOTHING), USUAL)
-    assert 0.01 < sqrt(whole.line.between) < 0.04
-    assert not whole.data.scatter.any()
 
 
 # Outliers, by hand
@@ -217,40 +190,7 @@ def test_a_run_is_judged_by_the_line_of_the_others() -> None:
     assert distance == pytest.approx((y[4] - np.polyval(line, 4)) / sqrt(own))
 
 
-def test_columns_are_compared_within_runs() -> None:
-    """A textbook's F test of a table with two ways; a run of one value does not change it."""
-    random = np.random.default_rng(1)
-    table = random.standard_normal((5, 3)) + 10 * random.standard_normal((5, 1)) + [0, 0, 3]
-    means, rows = table.mean(0), table.mean(1)[:, None]
-    left = sum_of_squares(table - rows - means + table.mean())
-    F = 5 * sum_of_squares(means - means.mean()) / 2 / (left / 8)
-    run, column = (x.ravel() for x in np.indices(table.shape))
-    p_value, spread = spread_of_columns(table.ravel(), run, column, 0.0)
-    assert (p_value, spread) == pytest.approx((stats.f.sf(F, 2, 8), np.ptp(means) / sqrt(left / 8)))
-    alone = spread_of_columns(np.append(table, 9.0), np.append(run, 5), np.append(column, 2), 0.0)
-    assert alone == pytest.approx((p_value, spread))
-    assert spread_of_columns(table[:, 0], run[::3], column[::3], 0.0) == (1.0, 0.0)
-
-
 # Against SciPy
-
-
-@pytest.mark.parametrize("kind", ["a", "time"])
-@pytest.mark.parametrize(
-    "more", [{}, {"stated": 1.0}, {"stated": 1.0, "masses": 2e-4}, {"masses": 2e-4, "repeats": 3}]
-)
-def test_values_and_uncertainties_are_those_of_scipy(kind: Kind, more: dict[str, Any]) -> None:
-    """With the variances found, the covariance is SciPy's own, not scaled by χ²."""
-    for seed in range(5):
-        whole = fitted(made(kind, seed, **more), conditions_of(NOTHING), USUAL)
-        data, sigma = whole.data, whole.line.sigma
-        values, covariance = by_scipy(kind, data.l, data.h, data.measured, sigma=sigma)
-        assert [*whole.results] == [*USUAL]
-        for i, one in enumerate(whole.results.values()):
-            assert one.value == pytest.approx(values[i], rel=1e-6)
-            assert one.uncertainty == pytest.approx(sqrt(covariance[i, i]), rel=1e-4)
-        both = sqrt(covariance[0, 0] * covariance[1, 1])
-        assert _correlation(whole.line.covariance) == pytest.approx(covariance[0, 1] / both, rel=1e-4)
 
 
 @pytest.mark.parametrize("kind", ["a", "time"])
@@ -366,34 +306,6 @@ def test_times_of_rit() -> None:
     assert first["expected_a"] == pytest.approx(2 * 0.98 / first["expected"] ** 2)
 
 
-@pytest.mark.parametrize(
-    ("table", "words"),
-    [
-        ("m1,m2,a\n1,3,3.268883333333333\n1,4,4.20285\n1,5,4.903325\n", ""),
-        ("m1,m2,a\n1,2,2\n2,1,-2\n", "--axle 0"),
-        ("m1,m2,a\n1,3,1\n1,2,2\n1,4,9\n1,5,5\n", "--find axle,gravity --M 0"),
-        ("m1,m2,t\n1,3,1\n1,2,2\n1,4,9\n1,5,5\n", "--find axle,gravity --M 0 --drop 1"),
-        ("m1,m2,t1,t2\n1,3,1,1\n1,2,2,2\n1,4,.9,.9\n1,5,.7,.7\n", "--drop 1"),
-        ("m1,m2,a,±\n1,3,3.268883333333333,1\n1,4,4.20285,1\n1,5,4.903325,1\n", ""),
-        ("m1,m2,a\n1e-9,3e-9,4.9\n1e-9,4e-9,5.8\n1e9,5e9,6.5\n", ""),
-        (SIMMONS, "--R 25mm"),
-    ],
-)
-def test_rounding_is_no_physics(table: str, words: str) -> None:
-    """A simulator's data were "significant (more than any number of standard uncertainties from 0)"; 1.6e31 u."""
-    result = found(table, words)
-    for form in ("--json", "--csv", "--only rim_mass,axle,chi2", ""):
-        printed = fit(table, f"{words} {form}").out
-        digits = [number.replace(".", "").lstrip("0") for number in re.findall(r"\d+\.\d+", printed)]
-        assert max(map(len, digits), default=0) <= 17
-    assert not re.search(r"\d{17}|0{20}|inf|nan|any number", printed)
-    assert all(line["residual"] is None or abs(line["residual"]) < 10 for line in result["runs"])
-    assert all(u > 0 for u in without_nulls(result["uncertainty"]).values())
-    if not words:
-        low, high = result["interval"]["axle"] or (-1, 1)
-        assert low < 0 < high
-
-
 def test_what_is_given_and_uncertain_counts_for_all_runs_together() -> None:
     """g is off in all runs alike: c by (S + c)/g times as much, for runs without other errors."""
     masses = ((1.0, 1.25), (1.05, 1.2), (1.0, 1.25), (1.1, 1.15))
@@ -435,20 +347,6 @@ def test_digits_are_those_that_are_determined() -> None:
         assert first | {"runs": 0} == second | {"runs": 0}
         digits = re.findall(r"[1-9]\d*", str([*first["uncertainty"].values()]).replace(".", ""))
         assert max(map(len, digits)) <= 7
-
-
-def test_what_is_left_out_has_no_part() -> None:
-    left, without = found(ODD, "--without 5"), found(ODD.replace("0.075,0.080,0.103\n", ""))
-    assert [left[x] for x in ("interval", "dof")] == [without[x] for x in ("interval", "dof")]
-    shown = {"a": 0.103, "u": None, "expected": pytest.approx(0.2901, abs=1e-3), "residual": None}
-    assert left["runs"][4] == left["runs"][4] | shown
-    table = "m1,m2,t1,time 2,t3\n.2,.22,2.1,2.2,9\n.2,.23,1.8,1.7,1.6\n.2,.24,1.5,1.4,1.5\n"
-    empty = found(table.replace("2.2,9", "2.2,").replace("1.8,1.7", "1.8,"), "--drop 1")
-    for cells in ("1:t3,2:t2", "1:t3 --without 2:t2"):
-        left = found(table, f"--drop 1 --without {cells}")
-        assert [left[x] for x in ("interval", "chi2")] == [empty[x] for x in ("interval", "chi2")]
-    whole, row = (found(table, f"--drop 1 --without {one}") for one in ("1:t1,1:t2,1:t3", "1"))
-    assert whole["interval"] == row["interval"]
 
 
 # What it needs and how it is printed

@@ -361,21 +361,3 @@ def test_the_least_friction_of_an_axle_holds_masses_at_rest_and_less_does_not() 
             for of in (Fraction(1), Fraction(999, 1000))
         ]
         assert [moves[0] == 0, moves[1] == 0] == [True, False]
-
-
-@pytest.mark.parametrize(
-    ("unit", "size"),
-    [("lb", Fraction("0.45359237")), ("N", 1 / Fraction("9.80665")), ("lbf", Fraction("0.45359237"))],
-)
-def test_a_mass_that_is_found_is_said_in_the_unit_of_the_other(unit: str, size: Fraction) -> None:
-    rng = Random(unit)
-    for _ in range(many(20)):
-        words = {
-            "m1": f"{rng.randint(1, 99)}{unit}",
-            "M": str(rng.randint(1, 9)),
-            "a": f"0.{rng.randint(10, 99)}",
-        }
-        answers = read_answers(words, None)
-        shown = oracle.correctly_rounded(oracle.measured(answers.decided.scene)[1].m2 / size, 6)
-        as_weight = "a weight of " if unit != "lb" else ""
-        assert f"m2 is {as_weight}{shown} {unit}." in notes(answers, ["m2"]), words

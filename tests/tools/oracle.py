@@ -210,24 +210,20 @@ def expected(scene: Scene) -> dict[str, Any]:
     state: Any = None  # |a|, T_l, T_h
     friction_mu: Any = None
     at_limit: Any
-    if driven:
-        state = away, l * (g + away), h * (g - away)
+    if driven or regime == "no-slip":
         if equal and l:
             friction_mu = zero
         elif grip is not None and mu is None:
             friction_mu = lambda: log(grip) / phi()  # noqa: E731
-    elif regime == "no-slip":
-        if s == 0:
+        if driven:
+            state = away, l * (g + away), h * (g - away)
+        elif s == 0:
             state = zero, l * g, l * g
         elif held:
             state = zero, l * g, h * g
         elif c is not None:
             a = falls(c)
             state = a, l * (g + a), h * (g - a)
-        if equal and l:
-            friction_mu = zero
-        elif grip is not None and mu is None:
-            friction_mu = lambda: log(grip) / phi()  # noqa: E731
     else:
         friction_mu = used = mu if regime == "verge" or mu_k is None else mu_k
         at_limit = partial(of_k, used)
