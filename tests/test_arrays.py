@@ -235,18 +235,6 @@ def test_missing_values_are_counted(accuracy: Any, chunk: int, monkeypatch: pyte
         assert missing == sum(times for (of, _), times in reasons.items() if of == name)
 
 
-@pytest.mark.parametrize("name", [name for name in INPUTS if name not in ("I", "inertia")])
-def test_rows_that_differ_in_one_input_are_not_alike(name: str) -> None:
-    """Among those that are solved one by one, and once where they are alike."""
-    usual = {"m1": 1.0, "m2": 3.0, "M": 10.0, "mu": 0.4, "mu_k": 0.2, "g": 9.0}
-    usual |= {"R": 0.1, "wrap": 170.0, "axle": 1.0}
-    given: dict[str, Any] = {x: np.full(3, value) for x, value in usual.items()}
-    given[name][1] *= 0.75
-    results = solve_arrays(**given, quantities=["friction_force_max", "torque"], accuracy="exact")
-    for i, row in enumerate((usual, usual | {name: usual[name] * 0.75}, usual)):
-        assert_is_solve(results, i, row, "exact")
-
-
 @pytest.mark.parametrize("accuracy", ACCURACIES)
 def test_chunks_tiles_and_the_number_of_processors_do_not_show(
     accuracy: Any, monkeypatch: pytest.MonkeyPatch
@@ -315,17 +303,6 @@ def test_temporaries_are_bounded() -> None:
     given = [np.full(300_000, value) for value in (1.0, 3.0, 10.0, 0.3)]
     left, most = memory_of(lambda: solve_arrays(*given))
     assert most - left < 60e6
-
-
-@pytest.mark.parametrize("few", [0, 1, 4, 1000])
-def test_rows_of_the_next_level_together_or_one_by_one(few: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """And some need two more levels."""
-    given = columns_of(alike("ordinary", 50) + alike("near_critical", 200))
-    exact = solve_arrays(**given, accuracy="exact")
-    monkeypatch.setattr(arrays.rows, "ROWS_ONE_BY_ONE", few)
-    results = solve_arrays(**given)
-    for name in exact:
-        np.testing.assert_allclose(results[name], exact[name], 2e-14, 0)
 
 
 def test_a_weight_that_is_a_tie_is_settled_in_columns(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -432,19 +409,6 @@ def test_what_is_missing_is_not_given_and_nan_is_an_error(name: str, column: Any
         assert STATUSES[found["status"][i]] == status
         if status == "valid":
             assert_is_solve(found, i, row, "certified")
-
-
-@pytest.mark.parametrize("name", INPUTS)
-@pytest.mark.parametrize("accuracy", ACCURACIES)
-def test_not_given_in_all_rows_is_not_given(name: str, accuracy: Accuracy) -> None:
-    """As `None` in `solve`, it leaves the usual value."""
-    given: dict[str, Any] = {"m1": 1.0, "m2": 3.0, "M": 5.0, "mu": 0.5, "R": 0.1, "axle": 2.0}
-    masked = solve_arrays(**given | {name: np.ma.masked}, accuracy=accuracy)
-    if name in MASSES:
-        assert masked["status"] == STATUSES.index(name)
-    else:
-        for other in (given | {name: None}, {key: x for key, x in given.items() if key != name}):
-            np.testing.assert_equal(solve_arrays(**other, accuracy=accuracy), masked)
 
 
 def test_a_table_of_many_kinds_is_planned_once() -> None:

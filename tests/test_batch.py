@@ -229,15 +229,6 @@ def test_one_bad_line_of_ndjson_is_one_bad_row(batch: Batch, tmp_path: Path) -> 
     assert i + 1 == most
 
 
-@pytest.mark.parametrize(
-    "first", ['{"m1":1,"m2":3,"error":"x"}', '{"m1":1,"m2":3,"radius":1}', '{"Mass":1,"m2":3}']
-)
-def test_what_is_refused_in_a_heading_is_refused_in_the_first_line(batch: Batch, first: str) -> None:
-    ran = batch(f'[1]\n{first}\n{{"m1":1,"m2":3}}\n', "--only a", "in.ndjson")
-    assert (ran.status, ran.out) == (1, "")
-    assert ran.err.startswith(("atwood: cannot read IN: '", "atwood: cannot read IN: it has columns"))
-
-
 def test_the_first_error_is_that_of_the_whole_table(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sources, "BLOCK_BYTES", 8)
     table = "m1,m2\n" + "1,3\n" * 9 + "1,x\n" + "1,3\n" * 8 + "3,1\n1,y\n"

@@ -47,18 +47,6 @@ def test_a_solution_shows_itself_as_the_command_does(atwood: Atwood, given: str)
     assert solution._repr_html_() == f"<pre>{escape(str(solution))}</pre>"
 
 
-NAMED = {
-    "mu=0": "verge; acceleration = 4.90332 m/s²; tension_1 = 14.7100 N; tension_2 = 14.7100 N",
-    "M=1e400 digits=900": "no-slip; acceleration = 3.92266e-399 m/s²; tension_1 = 9.80665 N",
-    "m1=1.0(1) M=10": "no-slip; acceleration = 2.18 ± 0.13 m/s²; tension_1 = 12.0 ± 1.1 N",
-}
-
-
-@pytest.mark.parametrize(("given", "shown"), NAMED.items())
-def test_a_solution_names_itself_in_a_line(given: str, shown: str) -> None:
-    assert repr(solve(**inputs(given))).startswith(f"<Solution {shown}; ")
-
-
 def test_a_printed_solution_fits_the_terminal_and_has_no_colours(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "60")
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)

@@ -4,14 +4,12 @@ from fractions import Fraction
 from operator import eq, ge, gt, le, lt
 
 import mpmath
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli.explain.conditions import failure, read_condition
 from atwood_cli.reading.scenes import read_answers
 from atwood_cli.solver.quantities import QUANTITIES
-from atwood_cli.solver.scene import SceneError
 
 from .conftest import examples
 
@@ -47,15 +45,3 @@ def test_a_value_with_the_sign_of_the_motion_says_so() -> None:
         if there[name] and here[name]:
             said = failure(here, read_condition(f"{name} == {there[name]}"))
             assert said.endswith("; it is positive when m2 descends") == (here[name] == -there[name]), name
-
-
-def test_a_quantity_whose_unit_nobody_reads_is_compared_with_plain_numbers(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """It ended in a KeyError, as the names of dimensions stood in a list of their own."""
-    monkeypatch.setitem(QUANTITIES, "torque", QUANTITIES["torque"]._replace(unit="kg furlong"))
-    answers = read_answers({"m1": 1, "m2": 3, "M": 10, "R": 1}, None)
-    assert not failure(answers, read_condition("angular_acceleration > 2.17rad/s2"))
-    assert failure(answers, read_condition("torque < 1")).endswith("it is 10.8963 kg furlong")
-    with pytest.raises(SceneError, match="must be a plain number, without the 'Nm'"):
-        read_condition("torque < 1Nm")

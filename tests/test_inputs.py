@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from atwood_cli import SceneError, solve
 from atwood_cli.reading.units import UNITS
-from atwood_cli.solver.decisions import Decisions
 from atwood_cli.solver.scene import Angle
 
 from .tools.scenes import read_scene
@@ -155,12 +154,6 @@ TEXTS: dict[str, dict[str, Any]] = {
     "M": {" INF ": inf},
     "inertia": {"Hoop": 1, "ring": 1, "disk": "1/2", "sphere": "2/5", "Shell": "2/3"},
 }
-AXLES: dict[Any, Any] = {
-    "0.0153": "0.0153", "15.3mN": "0.0153", "2 N": 2, "0.001kN": 1, "1kgf": "9.80665", "1 lbf": "4.4482216152605",
-    "0.5Nm": 10, "0.5 N m": 10, "20mNm": "0.4", "20 mN·m": "0.4", "1 lbf in": Fraction("4.4482216152605") * Fraction("0.508"),
-    Decimal("0.5"): "0.5",
-}
-"""Forces in N at the rim of a pulley of 5 cm."""
 # fmt: on
 
 
@@ -182,12 +175,6 @@ def test_text_means_exactly_itself(name: str, text: str, value: Any) -> None:
     scene = read_scene({"m1": 1, "m2": 1, "R": 1, name: text})
     read = getattr(scene, name)
     assert getattr(read, "number", read) == (value if value == inf else Fraction(value))
-
-
-@pytest.mark.parametrize(("axle", "newtons"), AXLES.items())
-def test_an_axle_is_a_force_at_the_rim_or_a_torque(axle: Any, newtons: Any) -> None:
-    scene = read_scene({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})
-    assert Decisions(scene).axle_friction == Fraction(newtons)
 
 
 @pytest.mark.parametrize(

@@ -123,23 +123,6 @@ def test_a_frame_of_pandas_keeps_its_index_and_its_columns() -> None:
     assert "is not a number" in solved.loc[9, "error"]
 
 
-@pytest.mark.parametrize("m1", [[1.0, 2.0], [-1.0, -2.0], [1.0, nan], [], [None, None]], ids=count())
-def test_types_are_the_same_whatever_the_rows(tmp_path: Path, m1: list[float | None]) -> None:
-    """A frame without an error had a column of nulls for it, and a writer of chunks refused the next."""
-    floats = dict.fromkeys(["m1", "m2", *solve_table(TABLE).columns[6:-1]], pl.Float64)
-    usual = {name: floats.get(name, pl.String) for name in ["m1", "m2", *solve_table(TABLE).columns[5:]]}
-    frame = pl.DataFrame({"m1": m1, "m2": [3.0] * len(m1)}, {"m1": pl.Float64, "m2": pl.Float64})
-    for solved in (solve_table(frame), solve_table(frame.lazy()).collect()):
-        assert dict(solved.schema) == usual
-    pd = pytest.importorskip("pandas")
-    solved = solve_table(pd.DataFrame({"m1": m1, "m2": 3.0}, dtype=float))
-    names = {pl.String: "string", pl.Float64: "float64"}
-    assert dict(solved.dtypes.map(str)) == {name: names[kind] for name, kind in usual.items()}
-    pytest.importorskip("pyarrow")
-    solved.to_parquet(tmp_path / "a.parquet")
-    assert dict(pl.read_parquet_schema(tmp_path / "a.parquet")) == usual
-
-
 def test_a_frame_of_dask_is_solved_when_it_is_computed() -> None:
     """It ended in an AttributeError."""
     pd = pytest.importorskip("pandas")

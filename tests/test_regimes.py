@@ -1,6 +1,5 @@
 """Where along a range the regime changes: the place found without a formula is that of the formulas."""
 
-from decimal import Decimal
 from fractions import Fraction
 from itertools import chain, pairwise
 from math import log, pi
@@ -18,23 +17,6 @@ from atwood_cli.sweep.ranges import read_sweep
 from .conftest import examples
 from .tools import oracle
 from .tools.scenes import G, any_scene
-
-positive = st.decimals(Decimal("0.01"), Decimal(100), places=4, allow_nan=False)
-
-
-@given(positive, positive, st.decimals(Decimal("0.01"), 1, places=3), st.booleans(), st.integers(1, 30))
-def test_it_is_the_critical_mass(m1: Decimal, m2: Decimal, mu: Decimal, down: bool, digits: int) -> None:
-    """Upwards, whichever way the range runs: "slip up to M = 43.3 kg" was said of one from 50 to 0."""
-    critical = solve(m1=m1, m2=m2, mu=mu, digits=40).critical_pulley_mass
-    ends = "1e9:0:2" if down else "0:1e9:2"
-    swept = read_sweep({"m1": str(m1), "m2": str(m2), "mu": str(mu), "M": ends})
-    found = list(changes(swept.scene, swept.ranges[0], digits))
-    there = critical is not None and critical <= 10**9
-    assert [(change.before, change.after) for change in found] == [("no-slip", "slip")] * there
-    if critical is not None and found:
-        place, unit = Decimal(str(found[0].at)), Decimal(10) ** (critical.adjusted() - digits + 1)
-        assert abs(critical - place) <= unit / 2
-        assert len(place.as_tuple().digits) == digits
 
 
 def check_with_oracle(words: dict[str, str], *places: float) -> int:

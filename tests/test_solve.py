@@ -88,18 +88,6 @@ def test_a_solution_is_the_same_however_it_is_read(given: str) -> None:
         assert (repr(other), other, hash(other), str(other)) == (repr(s), s, hash(s), str(s))
 
 
-@pytest.mark.parametrize(
-    "given", ["mu=0.3", "M=inf mu=0.2", "M=2 wrap=270 R=0.1 axle=1", "M=1 I=0.02 R=0.1", "a=1"]
-)
-def test_the_fields_of_a_scene_make_it_again(given: str) -> None:
-    s = solve(**inputs(given))
-    again = solve(
-        **{name: value for name, value in s.scene._asdict().items() if name not in ("motion", "terms")}
-    )
-    assert again.scene._replace(motion=s.scene.motion) == s.scene
-    assert again.acceleration == s.acceleration
-
-
 def test_python_asks_for_the_budget_for_units_and_for_types() -> None:
     s = solve("1.0(1)", 3, M="10(1)")
     assert s.to_dict()["budget"] is None

@@ -117,19 +117,6 @@ def exactly(*rows: str) -> list[list[float]]:
     return [[*map(float, row.split())] for row in rows]
 
 
-def test_uncertainties_are_in_the_unit_of_their_column(read: Any) -> None:
-    table = "m1 (g),±,m2 (g),±,t1 (s),t2 (s),u(t) (ms)\n200,± 0.1,207,0.2 g,3.9,4,20\n0,,207,±1%,5,,2e1\n"
-    first, second = "0.2 0.207 3.9 4 0.0001 0.0002 0.02 0.02", "0 0.207 5 0 0.00207 0.02"
-    assert numbers(runs := read(table)) == exactly(first, second)
-    assert runs.remarks == [
-        "read as: 'm1 (g)' as m1 in g, '±' as u(m1), 'm2 (g)' as m2 in g, '±' as u(m2), 't1 (s)',"
-        " 't2 (s)' as time in s, 'u(t) (ms)' as u(time) in ms."
-    ]
-    behind, percent = "m1,m2,t1,±,t2,±\n1,2,4,0.1,5,0.2\n", "m1,m2,t1,u(t1) (%),t2,± (%)\n1,2,4,1,5,2%\n"
-    assert numbers(read(behind)) == exactly("1 2 4 5 0 0 0.1 0.2")
-    assert numbers(read(percent)) == exactly("1 2 4 5 0 0 0.04 0.1")
-
-
 UNIT_OF_M1 = "'m1 (kg)' as m1 in kg; 'm2' in kg, 'time' in s, as no unit is given"
 
 
