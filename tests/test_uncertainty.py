@@ -1,4 +1,4 @@
-"""Standard uncertainties: how they are propagated and shown; how they are typed stands in `cases/uncertainty.md`."""
+"""Standard uncertainties: how they are typed, propagated, shown, and what is refused."""
 
 import json
 import re
@@ -20,6 +20,28 @@ from atwood_cli.solver.scene import Input
 from .conftest import many
 from .tools.running import LOADED, process
 from .tools.scenes import any_scene, inputs
+
+# How they are typed
+
+
+# fmt: off
+TEXTS: dict[str, tuple[str | int, str | int]] = {
+    "1.000(2)": (1, "0.002"), "1.00(12)": (1, "0.12"), "1.5(2)e-3": ("0.0015", "0.0002"), "1.5(234)": ("1.5", "23.4"),
+    ".5(1)": ("0.5", "0.1"), "250(1)": (250, 1), "250.0(5)g": ("0.25", "0.0005"), "250.0(5) g": ("0.25", "0.0005"),
+    "1.000±0.002": (1, "0.002"), "1.000+/-0.002": (1, "0.002"), "1 ± .5": (1, "0.5"), "1e-3±2e-5": ("0.001", "0.00002"),
+    **dict.fromkeys(["250±1g", "250±1 g", "250 g ± 1 g", "(250±1)g", "(250 +/- 1) g"], ("0.25", "0.001")),
+    **dict.fromkeys(["250g±1%", "(250±1%)g", "250 g +/- 1 %", "250g±10E-1%"], ("0.25", "0.0025")),
+    "(2.5±0.1)e-1kg": ("0.25", "0.01"), "1/3±1/30": ("1/3", "1/30"), "1/3g±3%": ("1/3000", "1e-5"),
+    "0(1)": (0, 1), "1.000": (1, 0), "1.000(0)": (1, 0), "1±0": (1, 0),
+}
+# fmt: on
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_text(text: str) -> None:
+    read = read_input("m1", text)
+    assert (read.number, read.uncertainty, read.given) == (*map(Fraction, TEXTS[text]), text)
+
 
 # Against steps that `solve` makes
 
