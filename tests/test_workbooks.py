@@ -277,7 +277,7 @@ def test_no_number_but_the_shown_one(sections: Any, number: Decimal) -> None:
     assert ours[2].strip() == theirs[3].strip(), (shown, got)
 
 
-@pytest.mark.parametrize("code", [r'0\;-0" kg"', "0_;-0", '0";";0', "0[$;];0", "[<0]-0"])
+@pytest.mark.parametrize("code", [r'0\;-0" kg"', "0_;-0", '0";";0', "0[$;];0", "[<0]-0", '[<1]0;-0" kg"'])
 def test_a_semicolon_or_a_condition_divides_no_section_by_halves(code: str) -> None:
     """Of the first, -5 was -5 kg, though it has one section."""
     assert shown_number("-5", code) == f"-5 shown as {code}"
