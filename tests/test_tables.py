@@ -222,6 +222,7 @@ ASKED = [
     ("fit --drop 1", "m1,m2,t,u(t) (zz)\n1,2,3,4\n", "column 'u(t) (zz)' has the unit 'zz'; it takes s, ms, us, min, h", "m1,m2,t,?"),
     ("fit", "m1,m2,a,mu\n1,2,3,0.3\n", "'mu' is not read, and may matter", "m1,m2,a,?"),
     ("fit --drop 1m", "m1 (N),u(m1) (g),m2,t\n1,1,1,1\n", "column 'u(m1) (g)' has another kind of unit than 'm1 (N)'", "m1:N,?,m2,t"),
+    ("fit --drop 50cm", "m1;m2;m3;t\n0,09 kg;0,09 kg;0,02 kg;1,1\n0,09 kg;0,09 kg;0,03 kg;0,9\n", "'m3' is not read, and may matter", "m1,m2,?,t"),
     ("fit --drop 1m", "m1 (g),m2 (g),Hanger (g),t\n100,110,5,2.2\n100,120,5,1.6\n", "'Hanger (g)' is not read, and may matter", "m1:g,m2:g,?,t"),
     ("fit", "M1+M2 (g),M1-M2 (g),a (m/s^2)\n115,5,0.380\n125,5,0.354\n", "m1 (0 if nothing hangs there), m2 are missing", "?,?,a:m/s2"),
     ("fit", "m1 (g),m2 (g),Total mass (g),a\n55,60,115,0.380\n60,65,125,0.354\n", "'Total mass (g)' is not read, and may matter", "m1:g,m2:g,?,a"),
