@@ -32,7 +32,7 @@ CONDITIONS = {"M": "M", "g": "g", "inertia": "inertia", "I": "I", "R": "R radius
 """The quantities that are the same in all runs: options, or columns with one number in all rows."""
 SPELLINGS = {word: name for name, words in {**WORDS, **CONDITIONS}.items() for word in words.split()}
 SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
-VOCABULARY = Vocabulary(MASS_NAMES | SPELLINGS, repeated=MEASURED, uncertain=True)
+VOCABULARY = Vocabulary(MASS_NAMES | SPELLINGS, repeated=MEASURED, constant=CONDITIONS, uncertain=True)
 LIKE_UNCERTAINTY = re.compile(
     r"±|\+/-|[Δδσ]|delta|sigma|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc|incert|fehler|s\.?d\b|d[tamh]\d?\b)"
     r"|(?:\b|_)(?:st(?:d|andard)\.?[ _-]?(?:dev|abw)|tolerance|unsicherheit)",
@@ -76,7 +76,8 @@ def columns_of(sheet: Sheet, naming: Naming, given: Mapping[str, Input]) -> Colu
     kind: Kind = "a" if any(own.name == "a" for own in headings) else "time"
     if kind == "a":  # a height has no effect
         headings = [heading for heading in headings if heading.name != "drop"]
-    comma = decimal_commas_in(sheet.rows, places, sheet.separator)
+    numeric = [i for i in range(len(sheet.columns)) if sheet.has_numbers(i)]
+    comma = decimal_commas_in(sheet.rows, numeric, sheet.separator)
     with_units = [x for x in places if all(row[x] in EMPTY or has_unit(row[x]) for row in sheet.rows)]
     rows = numbers or range(1, len(sheet.rows) + 1)
     return Columns(headings, kind, rows, bool(numbers), comma, with_units, unread)

@@ -327,6 +327,8 @@ def in_range(read: Input) -> bool:
 
 def _no_run(row: Sequence[str], headings: Sequence[Heading]) -> str:
     """Return why a row is no run, as where a trace of positions begins, or "" """
+    if not any(row[own.place].strip() for own in headings):
+        return "nothing that is read stands there"
     if any(map(STATISTIC.fullmatch, row)):
         return "a mean or a standard deviation is no run"
     cells = [(own.name, row[own.place].strip()) for own in headings if own.name in ("drop", "time")]

@@ -11,7 +11,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
-from unicodedata import normalize
+from unicodedata import decomposition, normalize
 
 from ..numbers.text import counted, in_quotes, without_blanks
 from ..reading.names import MASS_WORDS, divided
@@ -49,11 +49,13 @@ class Vocabulary(NamedTuple):
     """The quantities that columns may hold.
 
     ``names`` maps each spelling, without blanks and underscores, to a parameter of the model. A quantity in
-    ``repeated`` may have several columns, with numbers. Columns of uncertainties are known if ``uncertain``.
+    ``repeated`` may have several columns, with numbers; one in ``constant`` is the same in all rows. Columns
+    of uncertainties are known if ``uncertain``.
     """
 
     names: Mapping[str, str]
     repeated: Collection[str] = ()
+    constant: Collection[str] = ()
     uncertain: bool = False
 
 
@@ -295,7 +297,10 @@ def _named(word: str, vocabulary: Vocabulary) -> Heading | None:
     if vocabulary.uncertain and word in OF_COLUMN_BEFORE:
         return Heading(0, "", "", uncertain=True)
     match = UNCERTAINTY.fullmatch(word) if vocabulary.uncertain else None
-    key = re.sub(r"[\s_]", "", normalize("NFKC", (match[1] or match[2]) if match else word))
+    typed = (match[1] or match[2]) if match else word
+    if any(decomposition(sign).startswith("<super>") for sign in typed):  # t² is no t2
+        return None
+    key = re.sub(r"[\s_]", "", normalize("NFKC", typed))
     bare = re.sub(r"(?<=\d)(?:st|nd|rd|th)$", "", key)  # t 1st is t1
     letters = key if key in vocabulary.names else bare.rstrip("0123456789")
     name = vocabulary.names.get(letters, "")

@@ -13,6 +13,7 @@ from ..reading.units import symbol_of
 from ..solver.scene import MASSES, SceneError, parameter_of
 from .cells import has_unit
 from .headings import (
+    FILLED,
     LONGEST_HEADING,
     OPEN,
     UNREAD,
@@ -103,22 +104,22 @@ def understood(
     if double := [x for x in given if x in has]:
         raise SceneError(double[0], given[double[0]], "is a column of the table, too; leave one out")
     has = {*given, *has} if whole else set()
-    missing = _missing(has, vocabulary) if whole else []
-    which, what = [LACKING.get(x, x) for x in missing if x != "a"], "missing"
-    rivals = dict[int, int]()
-    if not which:
-        unread = [i for i, word in enumerate(said) if i not in places and word != UNREAD]
-        measured = [own for own in headings if own.name in vocabulary.repeated and not own.number]
-        rivals = {i: own.place for i in unread for own in measured if _is_alike(sheet, i, own, vocabulary)}
-        doubts = {i: doubt(sheet, i, has) for i in unread}
-        doubts |= {i: named(sheet.columns[i], i) for i in rivals}
-        which, what = [*filter(None, doubts.values())], "not read, and may matter"
-    if not which:
-        bare = [named(own.column, own.place) for own in headings if _unit_above(sheet, own)]
-        which, what = bare, "without a unit, and a line above has one"
-    if which:
-        are, doubtful = "is" if len(which) == 1 else "are", {*rivals, *rivals.values()}
-        raise ask(f"{', '.join(which)} {are} {what}", doubtful=doubtful)
+    missing = [x for x in _missing(has, vocabulary) if x != "a"] if whole else []
+    varying = [own for own in headings if not naming.words and _varies(sheet, own, vocabulary)]
+    unread = [i for i, word in enumerate(said) if i not in places and word != UNREAD]
+    measured = [own for own in headings if own.name in vocabulary.repeated and not own.number]
+    rivals = {i: own.place for i in unread for own in measured if _is_alike(sheet, i, own, vocabulary)}
+    doubts = {i: doubt(sheet, i, has) for i in unread} | {i: named(sheet.columns[i], i) for i in rivals}
+    bare = [own for own in headings if _unit_above(sheet, own)]
+    for which, what in (
+        ([LACKING.get(x, x) for x in missing], "missing"),
+        ([named(own.column, own.place) for own in varying], "not the same in all rows, as it must be"),
+        ([*filter(None, doubts.values())], "not read, and may matter"),
+        ([named(own.column, own.place) for own in bare], "without a unit, and a line above has one"),
+    ):
+        if which:
+            are, doubtful = "is" if len(which) == 1 else "are", {*rivals, *rivals.values()}
+            raise ask(f"{', '.join(which)} {are} {what}", doubtful=doubtful)
     return headings
 
 
@@ -159,42 +160,44 @@ def _asked(
 ) -> Unreadable:
     """Return the error that lists all columns, with words for those that are known or can be guessed.
 
-    What no column may hold is an option. Headings that are equal but for a number are m1 and m2, or repeats.
-    Columns that are ``doubtful`` are open, even if they are read.
+    What no column surely holds is an option, too. Columns that are ``doubtful`` are open, even if they are
+    read; those that the user leaves unread are not asked for again.
     """
-    why = "; ".join([why, *sheet.remarks])
+    why, repeated = "; ".join([why, *sheet.remarks]), {*vocabulary.repeated}
     if not sheet.rows:  # as of frames and NDJSON, whose columns have names
         return Unreadable(f"{why}; there are {listed(sheet.columns)}")
     said = [*sheet.columns]
     with suppress(Unreadable):
         said = naming.of(sheet.columns)
-    words = _words_known(sheet, said, vocabulary, given, doubtful)
-    names = {own.name for text in said if (own := meaning_of(text, vocabulary))}
-    missing, repeated = _missing({*given, *names}, vocabulary), vocabulary.repeated
+    words, headings = _words_known(sheet, said, vocabulary, given, doubtful)
+    for i in naming.filled:
+        words[i] = words[i].removesuffix(OPEN)
+    missing = _missing({*given, *(own.name for own in headings)}, vocabulary)
     left = [i for i, word in enumerate(words) if word == UNREAD and sheet.has_numbers(i)]
-    left = [i for i in left if i or not sheet.numbers]
+    is_unmeasured = not repeated.isdisjoint(missing)  # then one of those left unread must be it
+    left = [i for i in left if (is_unmeasured or said[i] != UNREAD) and (i or not sheet.numbers)]
     units = _guesses(sheet, left, missing)
     is_measured = any(units.get(x) for x in repeated)
-    lacking = [x for x in missing if not (units[x] or (x in repeated and is_measured))]
-    lacking = [x for x in lacking if x != "drop" or not units.get("a")]  # without a time no height is needed
-    is_unclear = {*lacking} - {"drop"}
+    lacking = {x for x in missing if not (units[x] or (x in repeated and is_measured))}
+    needed = {x for x in missing if x != "drop" or not units.get("a")}  # without a time no height is needed
+    lacking, options = lacking & needed, needed - repeated
     for i in left:
         fits = [x for x in missing if i in units[x]]
         is_merged = missing and repeated and not sheet.columns[i].strip()
-        may_matter = is_merged or i in doubtful or (said[i] != UNREAD and doubt(sheet, i, ()))
+        may_matter = is_merged or i in doubtful or doubt(sheet, i, ()) != ""
         rivals = len(units[fits[0]]) if len(fits) == 1 else 0
         if rivals == 1 or (rivals and fits[0] in repeated):
-            word = _word(Heading(i, "", fits[0], unit=units[fits[0]][i]))
-            words[i] = word + (OPEN if rivals > 1 or may_matter else "")
-        elif fits or is_unclear or may_matter:
+            own = Heading(i, "", fits[0], unit=units[fits[0]][i])
+            words[i] = _word(sheet, own, vocabulary, rivals > 1 or may_matter)
+            options -= {own.name}
+        elif fits or lacking - {"drop"} or may_matter:
             words[i] = OPEN
-    is_by_blanks = len(words) == 1 and any(SEVERAL.search(row[0]) for row in sheet.rows)
-    if is_unclear & {*repeated} and OPEN not in words:  # one that may be a mass may be a time
+    if lacking & repeated and OPEN not in words:  # one that may be a mass may be a time
         words = [OPEN if i in left else word for i, word in enumerate(words)]
-    if is_by_blanks or (is_unclear & {*repeated} and OPEN not in words):
+    is_by_blanks = len(words) == 1 and any(SEVERAL.search(row[0]) for row in sheet.rows)
+    if is_by_blanks or (lacking & repeated and OPEN not in words):
         return Unreadable(f"{why}; {NO_SUCH_NUMBERS}")
-    is_open = OPEN in [words[i] for i in left] and [*missing] != ["drop"]
-    return NotUnderstood(why, sheet, words, [] if is_open else [x for x in lacking if x not in repeated])
+    return NotUnderstood(why, sheet, words, [x for x in missing if x in options])
 
 
 def _words_known(
@@ -203,8 +206,8 @@ def _words_known(
     vocabulary: Vocabulary,
     given: Collection[str],
     doubtful: Collection[int],
-) -> list[str]:
-    """Return the words of columns that are known by what is ``said`` of them, UNREAD for all others.
+) -> tuple[list[str], list[Heading]]:
+    """Return the words of columns, UNREAD for those not known by what is ``said``, and what is read.
 
     What cannot be read beside those before it, or is given for all rows, too, is open.
     """
@@ -217,12 +220,13 @@ def _words_known(
             read[i], words[i] = UNREAD, OPEN
     for own in headings:
         unit = _unit_above(sheet, own)
-        word = _word(own._replace(unit=own.unit or unit)) + (OPEN if unit or own.place in doubtful else "")
+        is_open = bool(unit) or own.place in doubtful or _varies(sheet, own, vocabulary)
+        word = _word(sheet, own._replace(unit=own.unit or unit), vocabulary, is_open)
         words[own.place] = OPEN if own.name in given else word
         if own.u:
-            word = _word(own.u._replace(name=own.name, number=f"{own.number}_err"))
-            words[own.u.place] = OPEN if own.name in given else word
-    return words
+            its_u = own.u._replace(name=own.name, number=f"{own.number}_err")
+            words[own.u.place] = OPEN if own.name in given else _word(sheet, its_u, vocabulary, False)
+    return words, headings
 
 
 def _guesses(sheet: Sheet, left: Sequence[int], missing: Sequence[str]) -> dict[str, dict[int, str]]:
@@ -256,7 +260,20 @@ def _unit_among(texts: Iterable[str], meaning: Heading) -> str:
     return next((symbol_of(text) for text in texts if text != other and is_unit(text, meaning)), "")
 
 
-def _word(own: Heading) -> str:
-    """Return the word for a column: t1:ms, m1_err."""
-    name, unit = "t" if own.name == "time" else own.name, symbol_of(own.unit) or own.unit
-    return f"{name}{own.number}" + (f":{unit}" if unit else "")
+def _varies(sheet: Sheet, own: Heading, vocabulary: Vocabulary) -> bool:
+    """Decide whether a column of what is one for all rows has different cells."""
+    return own.name in vocabulary.constant and len({row[own.place].strip() for row in sheet.rows}) > 1
+
+
+def _word(sheet: Sheet, own: Heading, vocabulary: Vocabulary, is_open: bool) -> str:
+    """Return the word for a column: t1:ms, m1_err, m1:g?, or m2:g+? if cells below its first are blank.
+
+    The unit is that which is assumed, if there is none.
+    """
+    name, cells = "t" if own.name == "time" else own.name, [row[own.place].strip() for row in sheet.rows]
+    assumed = "" if own.uncertain or any(map(has_unit, cells)) else parameter_of(own.name).unit
+    unit = symbol_of(own.unit) or own.unit or symbol_of(assumed)
+    blanks = "".join("x" if cell else " " for cell in cells).lstrip()
+    is_filled = own.name not in vocabulary.repeated and " " in blanks
+    marks = (FILLED if is_filled else "") + (OPEN if is_filled or is_open else "")
+    return f"{name}{own.number}" + (f":{unit}" if unit else "") + marks

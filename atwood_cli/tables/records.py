@@ -5,14 +5,14 @@ import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import suppress
 from io import StringIO
-from itertools import chain, islice, pairwise
+from itertools import islice, pairwise
 from typing import NamedTuple
 
 from ..numbers.text import counted, without_blanks
 from .headings import are_units
 from .sources import LONGEST_RECORD, Unreadable
 
-SEPARATORS = ",\t;"
+SEPARATORS = ",\t;|"
 MOST_ABOVE = 40
 """The most rows of titles above the headings."""
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d+(?!\d|st|nd|rd|th)")
@@ -56,10 +56,21 @@ class Layout(NamedTuple):
     known: int = 0
 
     def headings(self, rows: Sequence[Sequence[str]], width: int) -> list[str]:
-        """Return the headings in the first of these rows: cells below each other are one."""
-        padded = ([*row, *[""] * width][:width] for row in rows[self.above : self.above + self.heads])
-        columns = ([cell for cell in cells if cell.strip() != "-"] for cells in zip(*padded, strict=True))
-        return [without_blanks(" ".join(cells)) for cells in columns] or [""] * width
+        """Return the headings in the first of these rows: cells below each other are one.
+
+        A cell above others holds to the right over blank ones, as a merged one does.
+        """
+        *upper, last = [
+            [*row, *[""] * width][:width] for row in rows[self.above : self.above + self.heads]
+        ] or [[""] * width]
+        for row in upper:
+            for place in range(1, width):
+                if last[place].strip() and not row[place].strip():
+                    row[place] = row[place - 1]
+        columns = (
+            [cell for cell in cells if cell.strip() != "-"] for cells in zip(*upper, last, strict=True)
+        )
+        return [without_blanks(" ".join(cells)) for cells in columns]
 
     def above_headings(self, rows: Sequence[Sequence[str]]) -> list[str]:
         """Return the cells above the last row of headings."""
@@ -73,11 +84,11 @@ def find_header(
 
     The header is the first row with two that are ``known``, or else one among several cells, or else with
     most words; a row of units below belongs to it. With ``decisive`` columns, it is the last row of words
-    there above the numbers, perhaps none.
+    there above the numbers, perhaps none. If fewer than two are known, so do further rows of words.
     """
     csv.field_size_limit(LONGEST_RECORD)
     lines = [line for line in islice(StringIO(text), MOST_ABOVE) if line.strip()]
-    usual = next((x for x in ";\t" if 2 * sum(x in line for line in lines) > len(lines)), ",")
+    usual = next((x for x in SEPARATORS[1:] if 2 * sum(x in line for line in lines) > len(lines)), ",")
     if decisive:
         rows = [cells for *_, cells in islice(records_of(text, usual), MOST_ABOVE) if any(cells)]
         read = [[row[x].strip() for x in decisive if x < len(row)] for row in rows]
@@ -88,23 +99,47 @@ def find_header(
         worded = [i for i, count in enumerate(counts[:-1]) if not count and all(read[i])]
         heads = [i for i in worded if i < full] or [i for i in worded if i == full + 1]  # below a title
         first = heads[-1] + 1 if heads else next(i for i, count in enumerate(counts) if count)
-        above = max(first - 1, 0)
-        if above and not counts[above - 1] and any(rows[above - 1][1:]):
-            above -= 1
+        while not counts[first] and _has_words(rows[first]):
+            first += 1
+        above = _first_heading(rows, max(first - 1, 0), known)
         return Layout(usual, above, first - above)
     headers: list[tuple[tuple[int, ...], Layout]] = []
     for separator in SEPARATORS:
         with suppress(csv.Error):
             table = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
-            for above, (row, below) in enumerate(pairwise(islice(chain(table, [[]]), MOST_ABOVE + 2))):
+            rows = [*islice(table, MOST_ABOVE + 2)]
+            is_even = 2 * sum(len(row) == len(below) > 1 for row, below in pairwise(rows)) > len(rows) - 1
+            for place, row in enumerate(rows[:MOST_ABOVE]):
                 count, words = len(known(row)), sum(bool(re.search(r"[^\W\d_]", cell)) for cell in row)
+                if place and are_units(row) and _has_words(rows[place - 1]):
+                    continue
                 is_known = count > 1 or sum(map(bool, row)) > 1  # a title may have the name of a quantity
-                rank = count if is_known else 0, words, separator == usual, len(row)
-                levels = (1 + are_units(below)) if words else 0
-                headers.append((rank, Layout(separator, above, levels, count)))
+                rank = count if is_known else 0, is_even, words, separator == usual, len(row)
+                last = place
+                while rows[last + 1 :] and words and last < place + 2:
+                    if not are_units(rows[last + 1]) and (count > 1 or not _has_words(rows[last + 1])):
+                        break
+                    last += 1
+                above = _first_heading(rows, place, known)
+                headers.append((rank, Layout(separator, above, last + 1 - above if words else 0, count)))
                 if count > 1:
                     break
     return max(headers, key=lambda header: header[0], default=((), Layout(SEPARATORS[0], 0, 1)))[1]
+
+
+def _has_words(row: Sequence[str]) -> bool:
+    """Decide whether a row has cells beside the first, and no number, as headings have, and no title has."""
+    return any(map(str.strip, row[1:])) and not any(map(LIKE_NUMBER.match, row))
+
+
+def _first_heading(
+    rows: Sequence[Sequence[str]], last: int, known: Callable[[Sequence[str]], Collection[str]]
+) -> int:
+    """Return the first row of the headings that end with the ``last``: above units, or unknown words."""
+    first = last
+    while first and (are_units(rows[first]) or len(known(rows[first])) < 2) and _has_words(rows[first - 1]):
+        first -= 1
+    return first
 
 
 def wrong_width(cells: int, width: int, separator: str) -> str:

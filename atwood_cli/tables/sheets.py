@@ -30,6 +30,10 @@ MISSING = ("nan", "NaN", "None", "<NA>", "NaT", "--")
 """How Python writes a missing value, and NumPy a masked one."""
 
 
+RULE = re.compile(r"[\s|:+-]*--[\s|:+-]*")
+"""A line of Markdown and the like below headings, or between rows."""
+
+
 class Sheet(NamedTuple):
     """A table of texts, its separator, how it was read, and the cells above its last row of headings."""
 
@@ -131,7 +135,9 @@ def read_sheet(text: str, vocabulary: Vocabulary, naming: Naming = NOTHING_SAID)
     remarks: list[str] = []
     known = partial(recognised, vocabulary=vocabulary, named=naming.named)
     text = re.sub(r'\A"?sep=[,;\t]"?\n', "", text.replace("\r\n", "\n"), flags=re.IGNORECASE)
-    lines = text.split("\n")
+    lines = [line for line in text.split("\n") if not RULE.fullmatch(line)]
+    if 2 * sum("|" in line for line in lines) > len(lines):
+        lines = [re.sub(r"^\s*\||\|\s*$", "", line) for line in lines]
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = re.sub(r"^\s*#[# \t]*(?![,;])", "", lines[i])  # NumPy writes headings so; # may be one, too
         is_first = not "".join(lines[:i]).strip()
