@@ -106,7 +106,7 @@ def understood(
     has = {*given, *has} if whole else set()
     missing = [x for x in _missing(has, vocabulary) if x != "a"] if whole else []
     varying = [own for own in headings if not naming.words and _varies(sheet, own, vocabulary)]
-    unread = [i for i, word in enumerate(said) if i not in places and word != UNREAD]
+    unread = [i for i, word in enumerate(said) if not missing and i not in places and word != UNREAD]
     measured = [own for own in headings if own.name in vocabulary.repeated and not own.number]
     rivals = {i: own.place for i in unread for own in measured if _is_alike(sheet, i, own, vocabulary)}
     doubts = {i: doubt(sheet, i, has) for i in unread} | {i: named(sheet.columns[i], i) for i in rivals}

@@ -101,7 +101,8 @@ def find_header(
         first = heads[-1] + 1 if heads else next(i for i, count in enumerate(counts) if count)
         while not counts[first] and _has_words(rows[first]):
             first += 1
-        above = _first_heading(rows, max(first - 1, 0), known)
+        above = max(first - 1, 0)
+        above -= above > 0 and _has_words(rows[above - 1])
         return Layout(usual, above, first - above)
     headers: list[tuple[tuple[int, ...], Layout]] = []
     for separator in SEPARATORS:
@@ -116,11 +117,11 @@ def find_header(
                 is_known = count > 1 or sum(map(bool, row)) > 1  # a title may have the name of a quantity
                 rank = count if is_known else 0, is_even, words, separator == usual, len(row)
                 last = place
-                while rows[last + 1 :] and words and last < place + 2:
-                    if not are_units(rows[last + 1]) and (count > 1 or not _has_words(rows[last + 1])):
-                        break
+                if words and count < 2 and rows[place + 2 :] and _has_words(rows[place + 1]):
                     last += 1
-                above = _first_heading(rows, place, known)
+                if words and rows[last + 1 :] and are_units(rows[last + 1]):
+                    last += 1
+                above = place - (place > 0 and count < 2 and _has_words(rows[place - 1]))
                 headers.append((rank, Layout(separator, above, last + 1 - above if words else 0, count)))
                 if count > 1:
                     break
@@ -130,16 +131,6 @@ def find_header(
 def _has_words(row: Sequence[str]) -> bool:
     """Decide whether a row has cells beside the first, and no number, as headings have, and no title has."""
     return any(map(str.strip, row[1:])) and not any(map(LIKE_NUMBER.match, row))
-
-
-def _first_heading(
-    rows: Sequence[Sequence[str]], last: int, known: Callable[[Sequence[str]], Collection[str]]
-) -> int:
-    """Return the first row of the headings that end with the ``last``: above units, or unknown words."""
-    first = last
-    while first and (are_units(rows[first]) or len(known(rows[first])) < 2) and _has_words(rows[first - 1]):
-        first -= 1
-    return first
 
 
 def wrong_width(cells: int, width: int, separator: str) -> str:
