@@ -34,7 +34,7 @@ Only = Annotated[
         "Output",
         metavar="NAME",
         words=lambda: {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from measurements")},
-        help="Print only this, or these: a,T1; see atwood quantities.",
+        help="Print only these: a,'T2 in lbf'; see atwood quantities.",
     ),
 ]
 Find = Annotated[

@@ -47,7 +47,7 @@ def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
     name = "a" if "a" in given else fall[-1]
     finds = _unknown(inputs, find) if is_measured else None
     scene = directed(Scene.of(inputs, finds, may_lack=not is_measured))
-    m2_may_rise = not scene.motion.a if finds == DRIVE else finds in MASSES and "a" not in given
+    m2_may_rise = (scene.motion.a or 0) <= 0 if finds == DRIVE else finds in MASSES and "a" not in given
     m2_may_rise &= finds == DRIVE or 0 not in (scene.m1, scene.m2)
     if below_0 := [x for x in fall if getattr(scene.motion, x) < 0 and not m2_may_rise]:
         raise SceneError(below_0[0], inputs[below_0[0]].given, NOT_BELOW_0)
