@@ -62,7 +62,8 @@ def laws(scene: Any) -> dict[str, bool]:
     if a is not None:
         kept["(1)"] = same(m1 * (g + a), t1) and same(m2 * (g - a), t2)
     if driven and force is not None:
-        kept["(3) with a drive"] = same(t2 - t1 + force, c * a + side(a) * f)
+        moves = side(a or scene.motion.speed or scene.motion.drop or 0)
+        kept["(3) with a drive"] = same(t2 - t1 + force, c * a + moves * f)
     elif rim is not None and c is not None and not driven:
         way = side(m2 - m1) or -side(a)  # equal masses only slow down
         kept["(3)"] = bool(abs(t2 - t1) <= f) if rim == 0 else same(t2 - t1, c * rim + way * f)
